@@ -21,13 +21,21 @@
   FILE(ntp)                      \
   FILE(w32time)                  \
   FILE(chrony)
-#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) FILE(limits)
+#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
+  FILE(limits)                           \
+  FILE(libsoftwaresync)                  \
+  FILE(rpi_sync)                         \
+  FILE(scheduled_action)                 \
+  FILE(periodic_ptp)                     \
+  FILE(pid_frame_rate)                   \
+  FILE(phase_rate)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
   FILE(hull)                       \
   FILE(two_way_poll)               \
   FILE(offset_filters)             \
-  FILE(librealsense_global)
+  FILE(librealsense_global)        \
+  FILE(host_stamps)
 #define SIMBENCH_GATHERING(FILE) \
   FILE(yoon2021)                 \
   FILE(genlock)                  \

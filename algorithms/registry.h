@@ -40,6 +40,7 @@ enum class Need : std::uint8_t {
   kFrames,          // Host::frame_feed()
   kFrameControl,    // Host::frame_controls()
   kPolls,           // polls of the cameras' clocks in the recording
+  kHostStamps,      // cameras that stamp with their host's steady clock
   kTruth,           // the truth: simulation only
 };
 

@@ -21,12 +21,12 @@ constexpr std::uint64_t kMostBudgetSeeds = 4;
 constexpr double kMostBudgetEvents = 20e6;
 
 // As many seeds as are cheap, going by the events of a mean run.
-std::uint64_t affordable_seeds(const Results& results) {
+std::uint64_t affordable_seeds(const Results& results, const Pipeline& pipeline) {
   const std::uint64_t runs = results.rows.size() * results.seed_count;
   if (runs == 0 || results.performance.events == 0) return 0;
   const double of_seed = static_cast<double>(results.performance.events) /
                          static_cast<double>(runs) *
-                         static_cast<double>(evaluation::StageSet::kSets);
+                         static_cast<double>(evaluation::stage_sets({pipeline}));
   const auto affordable = static_cast<std::uint64_t>(kMostBudgetEvents / of_seed);
   return std::min({kMostBudgetSeeds, affordable, results.seed_count});
 }
@@ -35,7 +35,7 @@ std::optional<Budget> affordable_budget(const Results& results, const Scenario& 
                                         const Row& row, const evaluation::Progress& progress) {
   const auto pipeline = std::ranges::find(scenario.pipelines, row.pipeline, &Pipeline::name);
   if (pipeline == scenario.pipelines.end() || pipeline->programs.has_value()) return std::nullopt;
-  const std::uint64_t seeds = affordable_seeds(results);
+  const std::uint64_t seeds = affordable_seeds(results, *pipeline);
   if (seeds == 0) return std::nullopt;
   return evaluation::error_budgets(scenario, {*pipeline}, simulated_world,
                                    {.first_seed = results.first_seed, .seeds = seeds}, progress)
@@ -45,9 +45,7 @@ std::optional<Budget> affordable_budget(const Results& results, const Scenario& 
 }  // namespace
 
 evaluation::RankedBy ranked_by(const Scenario& scenario) {
-  return scenario.evaluation.table == scenarios::TableKind::kLeaderboard
-             ? evaluation::RankedBy::kAbsoluteError
-             : evaluation::RankedBy::kAmd;
+  return evaluation::ranked_by(scenario.evaluation.table);
 }
 
 reports::AnswerText run_answer(const Results& results, const Scenario& scenario,

@@ -107,7 +107,7 @@ reports::Document document_of(const evaluation::Results& results,
   if (detail == Detail::kAnswer) return reports::quiet_document(results, answer);
   if (detail == Detail::kScreen) {
     return reports::summary_document(
-        results, {.summary = scenario.summary, .is_leaderboard = leaderboard}, answer);
+        results, {.summary = scenario.summary, .table = scenario.evaluation.table}, answer);
   }
   reports::Document document = leaderboard
                                    ? reports::leaderboard_document(results, scenario.summary)

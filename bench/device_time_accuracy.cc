@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "algorithms/registry.h"
@@ -69,7 +70,9 @@ void print_table(std::uint32_t seeds) {
   for (std::size_t i = 0; i < columns.size(); ++i) fmt::print("{:-<27}|", "");
   fmt::print("\n");
   for (const DeviceTimeEntry& entry : device_time_algorithms()) {
-    if (!entry.make || entry.info.family == "eq1" || entry.info.family == "sensor_normalised") {
+    const std::string& family = entry.info.family;
+    if (!entry.make || family == "eq1" || family == "sensor_normalised" ||
+        family == "host_stamps") {
       continue;
     }
     fmt::print("| {:22} |", entry.info.name);

@@ -17,6 +17,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ImageSize, width, height, focal_
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamProfile, kind, format, shutter, readout_periods,
                                    bytes_per_pixel, sizes, source)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyncModeProfile, mode, triggered)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameControlProfile, adjust_frame, insert_frame, frame_length,
+                                   start_at, source)
 
 namespace {
 
@@ -47,6 +49,9 @@ CameraProfile profile_of(const json& in) {
     latency.at("typical_ms").get_to(profile.typical_latency_ms);
   }
   latency.at("source").get_to(profile.latency_source);
+  if (const auto control = in.find("frame_control"); control != in.end()) {
+    profile.frame_control = control->get<FrameControlProfile>();
+  }
   return profile;
 }
 

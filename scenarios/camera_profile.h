@@ -58,6 +58,15 @@ struct StampProfile {
   std::string source;
 };
 
+// Which controls of its frames the maker offers (algorithms/ports/frame_control.h).
+struct FrameControlProfile {
+  bool adjust_frame = false;
+  bool insert_frame = false;
+  bool frame_length = false;
+  bool start_at = false;
+  std::string source;
+};
+
 struct CameraProfile {
   std::string model;  // its name in a scenario
   std::string name;   // its maker's name for it
@@ -70,6 +79,7 @@ struct CameraProfile {
   std::vector<StampProfile> stamps;
   std::vector<double> typical_latency_ms;  // lowest and highest mean; empty: not documented
   std::string latency_source;
+  std::optional<FrameControlProfile> frame_control;  // nothing: not known
 
   const StreamProfile* stream(StreamKind kind) const;     // null: the model has none
   const SyncModeProfile* sync_mode(SyncMode mode) const;  // null: the model does not have it

@@ -14,8 +14,10 @@
 #include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
 #include "scenarios/fields.h"
+#include "scenarios/frame_control_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/schema.h"
+#include "scenarios/wifi_checks.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -579,12 +581,14 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_tables(scenario);
   check_links(scenario);
   check_switches(scenario);
+  check_wifi(scenario);
   check_stack(scenario);
   check_streams(scenario);
   check_rates(scenario);
   check_shutters(scenario);
   check_calibrations(scenario);
   check_auto_exposure(scenario);
+  check_frame_control(scenario);
   check_faults(scenario, document);
   check_pipelines(scenario);
   check_studio(scenario);

@@ -87,11 +87,12 @@ constexpr auto words_of(UsbSharing) {
       {{kDedicated, "dedicated"}, {kFair, "fair"}, {kFifo, "fifo"}});
 }
 
-// The order of the rows: as listed, or sorted by absolute error.
-enum class TableKind : std::uint8_t { kPipelines, kLeaderboard };
+// The order of the rows: as listed, sorted by absolute error, or by how far exposures are apart.
+enum class TableKind : std::uint8_t { kPipelines, kLeaderboard, kAlignment };
 constexpr auto words_of(TableKind) {
   using enum TableKind;
-  return std::to_array<Word<TableKind>>({{kPipelines, "pipelines"}, {kLeaderboard, "leaderboard"}});
+  return std::to_array<Word<TableKind>>(
+      {{kPipelines, "pipelines"}, {kLeaderboard, "leaderboard"}, {kAlignment, "alignment"}});
 }
 
 // The median of an even number of values, which the paper does not define.

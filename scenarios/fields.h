@@ -165,13 +165,21 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Hosts, count, master_is_exact, c
                                                 stack)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Link, host, latency_fixed_ms,
                                                 latency_exponential_ms, asymmetry_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WifiPowerSave, idle_ms, beacon_interval_ms, dtim_period,
+                                   wake_up_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Wifi, access_point_host, wired_hosts,
+                                                rate_mbit_per_s, basic_rate_mbit_per_s, preamble_us,
+                                                sifs_us, slot_us, contention_window_min,
+                                                contention_window_max, retry_limit,
+                                                collision_probability, busy, power_save)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     Network, latency_fixed_ms, latency_exponential_ms, latency_session_exponential_ms,
     asymmetry_sigma_ms, port_asymmetry_sigma_ms, spike_probability, spike_max_ms,
     latency_quantiles_ms, burst, bandwidth_mbit_per_s, overhead_bytes, loss_probability,
     duplicate_probability, reorder_probability, reorder_max_ms, retransmit_timeout_ms, nagle,
     delayed_ack_ms, stamp_point, capture_traffic_share, switch_clock, switch_clock_error_ns, links,
-    switch_of_host, switch_residence_ms, cross_traffic_share, switch_clock_wander_ppb_per_sqrt_s)
+    switch_of_host, switch_residence_ms, cross_traffic_share, switch_clock_wander_ppb_per_sqrt_s,
+    wifi)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TriggerPause, at_ms, duration_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitter_sigma_us,
                                    branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,

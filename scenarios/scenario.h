@@ -100,7 +100,8 @@ struct HostClock {
 struct Burst {
   double rate_hz = 0;  // 0: none
   double duration_exponential_ms = 0;
-  double latency_ms = 0;  // network: extra latency; host: extra delay U(0, twice this)
+  // network: extra latency; host: extra delay U(0, twice this); wifi: extra wait Exp(this)
+  double latency_ms = 0;
 };
 
 // The network card's own clock.
@@ -176,6 +177,32 @@ struct Link {
   std::optional<double> asymmetry_ms{};  // fixed latency towards the host minus back
 };
 
+// A station sleeps after a time without messages of its own, and wakes for beacons.
+struct WifiPowerSave {
+  double idle_ms = 0;             // after its last message, until it sleeps
+  double beacon_interval_ms = 0;  // of the access point
+  std::int64_t dtim_period = 0;   // beacons from one for which it wakes to the next
+  double wake_up_ms = 0;          // before a sleeping station sends
+};
+
+// One wireless cell in which every host is a station, but for the access point and those on its
+// wire (sim/network/wifi.h: the model, its assumptions and sources).
+struct Wifi {
+  std::optional<std::int64_t> access_point_host{};  // none: a device of its own
+  std::vector<std::int64_t> wired_hosts{};          // on the access point's switch
+  double rate_mbit_per_s = 0;
+  double basic_rate_mbit_per_s = 0;  // of acknowledgements, broadcasts and multicasts
+  double preamble_us = 0;
+  double sifs_us = 0;
+  double slot_us = 0;  // DIFS is SIFS and two of these
+  std::int64_t contention_window_min = 0;
+  std::int64_t contention_window_max = 0;
+  std::int64_t retry_limit = 0;  // attempts at a transmission
+  double collision_probability = 0;
+  Burst busy;  // foreign traffic on the channel
+  std::optional<WifiPowerSave> power_save{};
+};
+
 struct Network {
   double latency_fixed_ms = 0;
   double latency_exponential_ms = 0;
@@ -207,6 +234,7 @@ struct Network {
   double switch_residence_ms = 0;  // fixed, in each switch on the way
   double cross_traffic_share = 0;  // of each switch port's time, by full frames of others
   double switch_clock_wander_ppb_per_sqrt_s = 0;  // random walk of a boundary switch's oscillator
+  std::optional<Wifi> wifi{};                     // none: all hosts are wired
 };
 
 struct TriggerPause {

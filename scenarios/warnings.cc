@@ -115,7 +115,7 @@ void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
 void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const Stream& stream = *scenario.scored_stream();
-  if (!cameras.follows_trigger(stream)) {
+  if (!cameras.follows_trigger(stream) && !cameras.frame_control) {
     warn(lines, scenario, "/evaluation/stream",
          fmt::format("in sync mode \"{}\" the {} stream does not follow the trigger: its frames "
                      "differ by up to a frame period",
@@ -147,6 +147,31 @@ void warn_about_wires(Lines& lines, const Scenario& scenario) {
                    sigma_ms, least_ms));
 }
 
+void warn_about_wifi(Lines& lines, const Scenario& scenario) {
+  if (!scenario.network.wifi || !scenario.hosts.nic.hardware_stamps) return;
+  warn(lines, scenario, "/network/wifi",
+       "a card's transmit stamp is of the instant at which it has the message, not of its "
+       "transmission: hardware stamps see the wait for the channel as asymmetry");
+}
+
+// Controls that the scenario gives to a camera whose maker does not offer them.
+void warn_about_controls(Lines& lines, const Scenario& scenario) {
+  const CameraProfile& camera = *find_camera_profile(scenario.cameras.model);
+  if (!scenario.cameras.frame_control || !camera.frame_control) return;
+  const FrameControlModel& given = *scenario.cameras.frame_control;
+  const FrameControlProfile& offered = *camera.frame_control;
+  const auto warn_if_hypothetical = [&](const char* control, bool is_given, bool is_offered) {
+    if (!is_given || is_offered) return;
+    warn(lines, scenario, fmt::format("/cameras/frame_control/{}", control),
+         fmt::format("a hypothetical control: no {} offers it (simbench list cameras)",
+                     camera.name));
+  };
+  warn_if_hypothetical("adjust_frame", given.adjust_frame, offered.adjust_frame);
+  warn_if_hypothetical("insert_frame", given.insert_frame, offered.insert_frame);
+  warn_if_hypothetical("frame_length", given.frame_length, offered.frame_length);
+  warn_if_hypothetical("start_at", given.start_at, offered.start_at);
+}
+
 void warn_about_temperature(Lines& lines, const Scenario& scenario) {
   if (!scenario.hosts.temperature) return;
   if (scenario.hosts.clock.oscillator.temperature_coefficient_ppb_per_k != 0) return;
@@ -155,9 +180,12 @@ void warn_about_temperature(Lines& lines, const Scenario& scenario) {
        "stated");
 }
 
+// Beside cameras that are hosts themselves, the master may be a computer without one.
 void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
   const std::vector<std::size_t> counts = scenario.cameras_by_host();
-  const std::int64_t idle = std::count(counts.begin(), counts.end(), 0U);
+  const bool is_master_left_out = scenario.cameras.stamp_clock == StampClock::kHost;
+  const std::int64_t idle =
+      std::count(counts.begin() + (is_master_left_out ? 1 : 0), counts.end(), 0U);
   if (idle == 0) return;
   warn(lines, scenario, "/hosts/count",
        fmt::format("{} of {} hosts have no camera", idle, scenario.hosts.count));
@@ -238,7 +266,9 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
+  warn_about_controls(lines, scenario);
   warn_about_wires(lines, scenario);
+  warn_about_wifi(lines, scenario);
   warn_about_temperature(lines, scenario);
   warn_about_oscillators(lines, scenario);
   warn_about_studio(lines, scenario);

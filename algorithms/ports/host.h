@@ -138,6 +138,13 @@ class PulseInput {
   virtual Task<std::optional<PulseStamp>> next(SteadyTime deadline) = 0;
 };
 
+// A reading of a camera's clock over its control interface, between two of the host's steady clock.
+struct CameraClockReading {
+  DeviceStamp device;
+  SteadyTime t0_steady{};
+  SteadyTime t1_steady{};
+};
+
 // A frame that one of the host's own cameras delivered.
 struct FrameArrival {
   std::uint32_t camera = 0;
@@ -148,6 +155,9 @@ struct FrameArrival {
   SteadyTime arrival_steady{};
   // The same instant as `sensor` on the host's steady clock, if the camera stamps with that.
   std::optional<SteadyTime> sensor_steady{};
+  // The newest reading of the camera's clock since its frame before, if the host reads it
+  // (FrameControl::next_frame() only).
+  std::optional<CameraClockReading> reading{};
 };
 
 class FrameFeed {

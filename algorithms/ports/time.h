@@ -99,12 +99,19 @@ constexpr std::int64_t nanoseconds_of(std::chrono::time_point<Base, Duration> t)
   return std::chrono::duration_cast<Nanoseconds>(t.time_since_epoch()).count();
 }
 
-// The steady time that the register of a camera stands for, where the camera stamps with its host's
-// steady clock: the one nearest to `near`, in whole microseconds. Within half a wrap.
+// How long before `at` a camera read its register, where it stamps with its host's steady clock, in
+// whole microseconds: of the readings that the register may stand for, the one nearest to `at`.
+// Within half a wrap.
+constexpr Nanoseconds age_of(DeviceStamp stamp, SteadyTime at) {
+  const std::int64_t at_us = floor_div(at.time_since_epoch().count(), 1000);
+  const std::int64_t rest_ns = (at.time_since_epoch().count() % 1000 + 1000) % 1000;
+  const auto later = static_cast<std::int32_t>(stamp.us - static_cast<std::uint32_t>(at_us));
+  return Nanoseconds(rest_ns - 1000 * std::int64_t{later});
+}
+
+// The steady time at which it did, near `near`.
 constexpr SteadyTime steady_of(DeviceStamp stamp, SteadyTime near) {
-  const std::int64_t near_us = floor_div(near.time_since_epoch().count(), 1000);
-  const auto behind = static_cast<std::int32_t>(stamp.us - static_cast<std::uint32_t>(near_us));
-  return SteadyTime(Nanoseconds(1000 * (near_us + behind)));
+  return near - age_of(stamp, near);
 }
 
 // The offset of `a` against `b`, two readings of different bases at one instant.

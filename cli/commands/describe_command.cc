@@ -138,6 +138,7 @@ std::vector<Described> algorithms_called(const std::string& name) {
     for (const auto& entry : entries) all.push_back({stage, &entry.info});
   };
   add("host_sync", host_sync_algorithms());
+  add("capture_alignment", capture_alignment_algorithms());
   add("device_time", device_time_algorithms());
   add("gathering", gathering_algorithms());
   const auto chosen = [&all](const auto& is_meant) {
@@ -237,6 +238,7 @@ int describe(const DescribeOptions& options) {
   known.reserve(builtin.size());
   for (const scenarios::BuiltinScenario& each : builtin) known.push_back(each.name);
   for (const auto& entry : host_sync_algorithms()) known.push_back(entry.info.name);
+  for (const auto& entry : capture_alignment_algorithms()) known.push_back(entry.info.name);
   for (const auto& entry : device_time_algorithms()) known.push_back(entry.info.name);
   for (const auto& entry : gathering_algorithms()) known.push_back(entry.info.name);
   const std::vector<std::string> similar = scenarios::nearest(options.what, known);

@@ -70,6 +70,7 @@ std::string bare_names(const ListOptions& options) {
   }
   if (options.what.empty() || options.what == "algorithms") {
     add_algorithms(host_sync_algorithms());
+    add_algorithms(capture_alignment_algorithms());
     add_algorithms(device_time_algorithms());
     add_algorithms(gathering_algorithms());
   }
@@ -190,6 +191,18 @@ std::string latency_text(const scenarios::CameraProfile& camera) {
       kListIndent);
 }
 
+std::string frame_control_text(const scenarios::FrameControlProfile& control) {
+  std::vector<std::string_view> offered;
+  if (control.adjust_frame) offered.emplace_back("adjust_frame");
+  if (control.insert_frame) offered.emplace_back("insert_frame");
+  if (control.frame_length) offered.emplace_back("frame_length");
+  if (control.start_at) offered.emplace_back("start_at");
+  if (offered.empty()) offered.emplace_back("none");
+  return reports::wrapped(
+      fmt::format("controls of its frames: {} [{}]", fmt::join(offered, ", "), control.source),
+      kListIndent);
+}
+
 // The profiles of all camera models, with their sources.
 std::string camera_list_text() {
   std::string text;
@@ -200,6 +213,7 @@ std::string camera_list_text() {
     text += sync_text(camera);
     for (const scenarios::StampProfile& stamp : camera.stamps) text += stamp_text(stamp);
     text += latency_text(camera);
+    if (camera.frame_control) text += frame_control_text(*camera.frame_control);
   }
   return text;
 }
@@ -263,10 +277,12 @@ std::string listing(const ListOptions& options) {
   if (options.what == "figures") return figure_list();
   if (options.what == "algorithms") {
     return details_text("host_sync", host_sync_algorithms()) + "\n" +
+           details_text("capture_alignment", capture_alignment_algorithms()) + "\n" +
            details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
            details_text("gathering", gathering_algorithms());
   }
   return scenarios_text() + "\n" + names_text("host_sync", host_sync_algorithms()) + "\n" +
+         names_text("capture_alignment", capture_alignment_algorithms()) + "\n" +
          names_text("device_time", device_time_algorithms()) + kVariants + "\n" +
          names_text("gathering", gathering_algorithms());
 }

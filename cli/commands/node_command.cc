@@ -96,9 +96,12 @@ const char* lacking(Need need) {
       return "a GNSS receiver's pulses";
     case Need::kTriggerLine:
       return "the trigger line wired into the host";
+    case Need::kFrameControl:
+      return "cameras whose frames can be controlled";
     case Need::kTruth:
       return "the truth";
     case Need::kPolls:
+    case Need::kHostStamps:
     case Need::kFrames:
       break;
   }
@@ -118,6 +121,11 @@ std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
         "pipeline '{}': its programs run on simulated hosts and in validate-model only; "
         "on real hosts start them yourself, with host_sync \"free_running\"",
         pipeline));
+  }
+  if (choice.is_steered()) {
+    throw scenarios::InputError(
+        fmt::format("pipeline '{}': its capture_alignment '{}' needs {}, which nodes do not have",
+                    pipeline, choice.capture_alignment.info.name, lacking(Need::kFrameControl)));
   }
   for (const Need need : choice.host_sync.info.needs) {
     if (const char* what = lacking(need)) {

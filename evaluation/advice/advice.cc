@@ -151,10 +151,10 @@ class Adviser {
         advice_.request.requirements.front().metric == &metric("absolute_error_ms");
     const ErrorParts& parts = is_error ? budget.absolute_error_ms : budget.amd_ms;
     const auto largest = std::ranges::max_element(parts.stages, {}, &BudgetPart::mean);
-    advice_.fails_first = {
-        .metric = is_error ? "absolute error" : "AMD",
-        .stage = std::string(kStageNames[static_cast<std::size_t>(largest - parts.stages.begin())]),
-        .share = largest->mean / parts.total.mean};
+    advice_.fails_first = {.metric = is_error ? "absolute error" : "AMD",
+                           .stage = std::string(stage_name(
+                               budget, static_cast<Stage>(largest - parts.stages.begin()))),
+                           .share = largest->mean / parts.total.mean};
   }
 
   const WorldFactory& make_world_;

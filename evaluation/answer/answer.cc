@@ -79,10 +79,23 @@ void find_limit(const std::vector<const Row*>& limits, Answer& answer) {
 
 }  // namespace
 
+RankedBy ranked_by(scenarios::TableKind table) {
+  switch (table) {
+    case scenarios::TableKind::kPipelines:
+      return RankedBy::kAmd;
+    case scenarios::TableKind::kLeaderboard:
+      return RankedBy::kAbsoluteError;
+    case scenarios::TableKind::kAlignment:
+      break;
+  }
+  return RankedBy::kExposureSpread;
+}
+
 RowStanding standing_of(const Row& row) {
   const DeviceTimeName device_time = parse_device_time_name(row.device_time);
   const DeviceTimeEntry* const entry = find_device_time(device_time.base);
   if (is_oracle(find_host_sync(row.host_sync)) || needs_truth(entry) ||
+      needs_truth(find_capture_alignment(row.capture_alignment)) ||
       needs_truth(find_gathering(row.gathering))) {
     return RowStanding::kLimit;
   }
@@ -92,6 +105,9 @@ RowStanding standing_of(const Row& row) {
 }
 
 RowStanding standing_by(const Row& row, RankedBy ranked_by) {
+  if (ranked_by == RankedBy::kExposureSpread && row.capture_alignment.empty()) {
+    return RowStanding::kReference;
+  }
   if (ranked_by != RankedBy::kClockSpread) return standing_of(row);
   return is_oracle(find_host_sync(row.host_sync)) ? RowStanding::kLimit : RowStanding::kRunnable;
 }
@@ -119,6 +135,8 @@ const Series& ranked_series(const Row& row, RankedBy ranked_by) {
       return row.amd_ms;
     case RankedBy::kAbsoluteError:
       return row.absolute_error_ms;
+    case RankedBy::kExposureSpread:
+      return row.exposure_spread_p95_ms;
     case RankedBy::kClockSpread:
       break;
   }

@@ -30,14 +30,18 @@
 
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/paired.h"
+#include "scenarios/choices.h"
 
 namespace simbench::evaluation {
 
 enum class RankedBy : std::uint8_t {
   kAmd,
   kAbsoluteError,
-  kClockSpread,  // of clock runs: the mean spread in time
+  kExposureSpread,  // the 95 % quantile over pulses; rows that follow a trigger are references
+  kClockSpread,     // of clock runs: the mean spread in time
 };
+// How a table of captures is ranked.
+RankedBy ranked_by(scenarios::TableKind table);
 
 // What a row may be called in an answer.
 enum class RowStanding : std::uint8_t {

@@ -14,6 +14,10 @@ namespace {
 
 constexpr const char* kOracle = "oracle";
 
+constexpr double kFinestGranuleUs = 0.001;
+
+bool is_steered(const scenarios::Pipeline& pipeline) { return !pipeline.capture_alignment.empty(); }
+
 void idealise_trigger(scenarios::Trigger& trigger) {
   trigger.pulse_jitter_sigma_us = 0;
   trigger.branch_delay_max_us = 0;
@@ -81,11 +85,12 @@ bool delivery_is_scoring_alone(const scenarios::Cameras& cameras) {
 
 // All sets of ideal stages, by world: those that change the pipeline or its scoring alone go
 // together, so that they share what they can of the world of the first.
-std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scenario) {
+std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scenario,
+                                                 std::size_t all) {
   std::vector<Stage> within = {Stage::kGathering, Stage::kHostClock};
   if (delivery_is_scoring_alone(scenario.cameras)) within.push_back(Stage::kUsbDelivery);
   std::vector<std::vector<StageSet>> worlds;
-  for (std::size_t bits = 0; bits < StageSet::kSets; ++bits) {
+  for (std::size_t bits = 0; bits < all; ++bits) {
     const StageSet first(bits);
     if (std::ranges::any_of(within, [&](Stage stage) { return first.has(stage); })) continue;
     std::vector<StageSet>& sets = worlds.emplace_back(1, first);
@@ -104,6 +109,7 @@ scenarios::Pipeline ideal_pipeline(scenarios::Pipeline pipeline, StageSet ideal)
     pipeline.programs.reset();
   }
   if (ideal.has(Stage::kGathering)) pipeline.gathering = kOracle;
+  if (ideal.has(Stage::kTrigger) && is_steered(pipeline)) pipeline.capture_alignment = kOracle;
   return pipeline;
 }
 
@@ -148,6 +154,16 @@ struct WorldScores {
   BySeed physical_ms = BySeed(StageSet::kSets);
 };
 
+// Of pipelines that nobody steers, what the granularity is makes no difference.
+void repeat_without_granularity(WorldScores& scores) {
+  constexpr std::size_t kHalf = StageSet::kSets / 2;
+  for (WorldScores::BySeed* values :
+       {&scores.set_amd_ms, &scores.amd_ms, &scores.set_absolute_error_ms,
+        &scores.absolute_error_ms, &scores.physical_ms}) {
+    std::copy_n(values->begin(), kHalf, values->begin() + kHalf);
+  }
+}
+
 void set_scores(StageSet ideal, const Row& row, WorldScores& scores) {
   const std::size_t world = ideal.bits();
   for (const SeedScore& seed : row.seeds) {
@@ -183,6 +199,7 @@ ErrorParts divide(const std::vector<std::vector<double>>& by_world) {
 Budget budget_of(const scenarios::Pipeline& pipeline, const WorldScores& scores) {
   Budget budget;
   budget.pipeline = pipeline.name;
+  budget.is_steered = is_steered(pipeline);
   budget.amd_of_sets = all_exist(scores.set_absolute_error_ms);  // of one camera too
   budget.amd_ms = divide(budget.amd_of_sets ? scores.set_amd_ms : scores.amd_ms);
   budget.absolute_error_ms =
@@ -214,7 +231,28 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
     world.cameras.skew_of_camera_ppm.clear();
   }
   if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
+  if (ideal.has(Stage::kGranularity) && world.cameras.frame_control) {
+    world.cameras.frame_control->granularity_us = kFinestGranuleUs;
+  }
   return world;
+}
+
+std::vector<Stage> stages_of(const Budget& budget) {
+  std::vector<Stage> stages;
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+    const auto each = static_cast<Stage>(stage);
+    if (each != Stage::kGranularity || budget.is_steered) stages.push_back(each);
+  }
+  return stages;
+}
+
+std::string_view stage_name(const Budget& budget, Stage stage) {
+  if (stage == Stage::kTrigger && budget.is_steered) return "phase";
+  return kStageNames[static_cast<std::size_t>(stage)];
+}
+
+std::size_t stage_sets(const std::vector<scenarios::Pipeline>& pipelines) {
+  return std::ranges::any_of(pipelines, is_steered) ? StageSet::kSets : StageSet::kSets / 2;
 }
 
 std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
@@ -225,10 +263,11 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
   EvaluationOptions of_worlds = options;
   of_worlds.keep_pulses = false;
   of_worlds.share_captures = true;
-  const std::uint64_t total = StageSet::kSets * pipelines.size() * options.seeds;
+  const std::size_t sets_in_all = stage_sets(pipelines);
+  const std::uint64_t total = sets_in_all * pipelines.size() * options.seeds;
   std::vector<WorldScores> scores(pipelines.size());
   std::uint64_t done_before = 0;
-  for (const std::vector<StageSet>& sets : sets_by_world(scenario)) {
+  for (const std::vector<StageSet>& sets : sets_by_world(scenario, sets_in_all)) {
     const scenarios::Scenario world = ideal_scenario(scenario, pipelines.front(), sets.front());
     const Results results = evaluate_choices(
         world, choices_of(scenario, pipelines, sets), [&] { return make_world(world); }, of_worlds,
@@ -242,6 +281,7 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
   }
   std::vector<Budget> budgets;
   for (std::size_t i = 0; i < pipelines.size(); ++i) {
+    if (sets_in_all < StageSet::kSets) repeat_without_granularity(scores[i]);
     budgets.push_back(budget_of(pipelines[i], scores[i]));
   }
   return budgets;

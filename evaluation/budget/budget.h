@@ -29,14 +29,18 @@
 // others are ideal. Lost frames stay lost. A host synchronisation that looks at frames gets their
 // real arrivals: its use of them is part of the host clock.
 //
-// Cost: 128 scores of the pipeline per seed, over 32 captures in 16 worlds: gathering and delivery
-// only change what is scored, the host clock only the pipeline. 64 captures in 32 worlds where the
-// scenario has polls, or draws errors of its calibrations, which an ideal delivery takes away. Of
-// several pipelines the cameras' half of a world is made once for all (docs/design.md section 2),
-// and so is the capture of an ideal host clock.
-// Memory: on each thread a scorer for every pipeline in four or two sets of stages at a time.
-// Source: Shapley, "A value for n-person games", 1953; docs/design.md section 6. Each oracle is a
-// definition.
+// Of a pipeline with a capture_alignment there are eight stages: "phase" in place of the trigger,
+// which is ideal where all cameras expose at once as far as their granularity lets them (the oracle
+// of capture_alignment), and "granularity", which is ideal where frames have lengths of any
+// nanosecond. What the host clock does to the exposures is in its part of physical_ms.
+//
+// Cost: 128 scores of the pipeline per seed (256 of a steered one), over 32 captures in 16 worlds:
+// gathering and delivery only change what is scored, the host clock only the pipeline. 64 captures
+// in 32 worlds where the scenario has polls, or draws errors of its calibrations, which an ideal
+// delivery takes away. Of several pipelines the cameras' half of a world is made once for all
+// (docs/design.md section 2), and so is the capture of an ideal host clock. Memory: on each thread
+// a scorer for every pipeline in four or two sets of stages at a time. Source: Shapley, "A value
+// for n-person games", 1953; docs/design.md section 6. Each oracle is a definition.
 //
 //   const std::vector<Budget> budgets =
 //       error_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr);
@@ -65,14 +69,15 @@ enum class Stage : std::uint8_t {
   kUsbDelivery,
   kHostClock,
   kGathering,
+  kGranularity,  // of pipelines with a capture_alignment alone
 };
 
-inline constexpr std::size_t kStageCount = 7;
+inline constexpr std::size_t kStageCount = 8;
 inline constexpr std::array<std::string_view, kStageCount> kStageNames = {
     "trigger",      "exposure",   "stamp quantisation", "device clock",
-    "USB delivery", "host clock", "gathering"};
+    "USB delivery", "host clock", "gathering",          "granularity"};
 
-// A set of stages, as the bits of a number below 2^7.
+// A set of stages, as the bits of a number below 2^8.
 class StageSet {
  public:
   static constexpr std::size_t kSets = std::size_t{1} << kStageCount;
@@ -106,11 +111,20 @@ struct ErrorParts {
 
 struct Budget {
   std::string pipeline;
+  bool is_steered = false;  // by a capture_alignment
   bool amd_of_sets = true;
   ErrorParts amd_ms;
   ErrorParts absolute_error_ms;
   ErrorParts physical_ms;
 };
+
+// The stages that a budget has, in order, and their names: the trigger of a steered pipeline is the
+// "phase" of its alignment.
+std::vector<Stage> stages_of(const Budget& budget);
+std::string_view stage_name(const Budget& budget, Stage stage);
+
+// How often a budget of these pipelines scores each at a seed.
+std::size_t stage_sets(const std::vector<scenarios::Pipeline>& pipelines);
 
 // Returns a budget for each pipeline, in this order. Ignores EvaluationOptions::pipelines and
 // keep_pulses. Throws what evaluate() throws.

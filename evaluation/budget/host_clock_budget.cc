@@ -51,6 +51,7 @@ void idealise_network(scenarios::Network& network) {
   network.cross_traffic_share = 0;
   network.switch_clock_error_ns = 0;
   network.switch_clock_wander_ppb_per_sqrt_s = 0;
+  network.wifi.reset();
   for (scenarios::Link& link : network.links) {
     link.latency_exponential_ms = 0;
     link.asymmetry_ms = 0;

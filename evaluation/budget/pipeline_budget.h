@@ -24,8 +24,8 @@ struct PipelineBudget {
   HostClockBudget host_clock;
 };
 
-// Runs of each seed, of a pipeline whose host clocks are divided.
-inline constexpr std::size_t kBudgetRuns = StageSet::kSets + kHostClockWorlds;
+// Runs of each seed, of a pipeline whose host clocks are divided and whose exposures nobody steers.
+inline constexpr std::size_t kBudgetRuns = StageSet::kSets / 2 + kHostClockWorlds;
 
 // Returns one for each pipeline, in this order.
 std::vector<PipelineBudget> pipeline_budgets(const scenarios::Scenario& scenario,

@@ -64,8 +64,9 @@ ChosenStreams chosen_streams(const std::vector<CameraStream>& streams, const std
 }  // namespace
 
 bool runs_on_recordings(const AlgorithmInfo& info) {
-  return std::ranges::none_of(
-      info.needs, [](Need need) { return need == Need::kPolls || need == Need::kTruth; });
+  return std::ranges::none_of(info.needs, [](Need need) {
+    return need == Need::kPolls || need == Need::kHostStamps || need == Need::kTruth;
+  });
 }
 
 GatheredSets gathered_sets(const std::vector<CameraStream>& streams, const std::string& kind,

@@ -170,6 +170,11 @@ std::string lacking(const Scenario& scenario, Need need) {
       return scenario.cameras.clock_poll.is_on()
                  ? ""
                  : "polls of the cameras' clocks (/cameras/clock_poll/interval_ms is 0)";
+    case Need::kHostStamps:
+      return scenario.cameras.stamp_clock == scenarios::StampClock::kHost
+                 ? ""
+                 : "cameras that stamp with their host's clock (/cameras/stamp_clock is not "
+                   "\"host\")";
     case Need::kFrames:
     case Need::kTruth:
       return "";

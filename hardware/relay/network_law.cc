@@ -96,6 +96,10 @@ void check_relay_can(const scenarios::Scenario& scenario) {
     scenarios::fail_at(scenario, "/network/switch_of_host",
                        "found switches in a line, allowed where a relay imitates the network: one");
   }
+  if (network.wifi) {
+    scenarios::fail_at(scenario, "/network/wifi",
+                       "found a wireless cell, allowed where a relay imitates the network: none");
+  }
   if (scenario.hosts.stack) {
     scenarios::fail_at(scenario, "/hosts/stack",
                        "found a stack, allowed where a relay imitates the network: none; the nodes "

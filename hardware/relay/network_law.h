@@ -14,8 +14,8 @@
 // distributions.
 //
 // check_relay_can() refuses what a relay cannot imitate: bursts, bandwidth, Nagle's algorithm,
-// capture traffic, switches that know PTP or stand in a line, latencies per session, stacks of
-// hosts (those are the machine's own).
+// capture traffic, switches that know PTP or stand in a line, wireless cells, latencies per
+// session, stacks of hosts (those are the machine's own).
 //
 //   NetworkLaw law(scenario.network, seed, 0, 3);
 //   for (MonotonicTime at : law.datagram(received)) send_at(at);

@@ -61,12 +61,13 @@ Need need_of(const std::string& name) {
                                                     {"gnss", Need::kGnss},
                                                     {"trigger_line", Need::kTriggerLine},
                                                     {"frames", Need::kFrames},
-                                                    {"polls", Need::kPolls}};
+                                                    {"polls", Need::kPolls},
+                                                    {"host_stamps", Need::kHostStamps}};
   const auto found = needs.find(name);
   if (found != needs.end()) return found->second;
   throw py::value_error(
       fmt::format("needs: found '{}', allowed: hardware_stamps, pps, gnss, trigger_line, frames, "
-                  "polls",
+                  "polls, host_stamps",
                   name));
 }
 

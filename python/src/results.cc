@@ -144,10 +144,10 @@ std::string run_text(Run& run, const std::string& format, const std::string& det
 }
 
 std::string html_of(Run& run, const py::object& on_progress) {
-  const bool leaderboard =
-      run.scenario && run.scenario->evaluation.table == scenarios::TableKind::kLeaderboard;
+  const scenarios::TableKind table =
+      run.scenario ? run.scenario->evaluation.table : scenarios::TableKind::kPipelines;
   return reports::html(known_answer(run, on_progress)) +
-         reports::html(reports::summary_blocks(run.results(), leaderboard));
+         reports::html(reports::summary_blocks(run.results(), table));
 }
 
 py::list overview_of(const Run& run) {

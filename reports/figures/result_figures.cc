@@ -253,11 +253,12 @@ FigurePanel parts_panel(const std::string& title, const BudgetPart& total,
   return made;
 }
 
-NamedParts named_parts(const ErrorParts& error) {
+NamedParts named_parts(const Budget& budget, const ErrorParts& error) {
   NamedParts parts;
   parts.reserve(error.stages.size() + 1);
-  for (std::size_t stage = 0; stage < error.stages.size(); ++stage) {
-    parts.emplace_back(evaluation::kStageNames[stage], &error.stages[stage]);
+  for (const evaluation::Stage stage : evaluation::stages_of(budget)) {
+    parts.emplace_back(evaluation::stage_name(budget, stage),
+                       &error.stages[static_cast<std::size_t>(stage)]);
   }
   parts.emplace_back("remainder", &error.remainder);
   return parts;
@@ -339,7 +340,7 @@ Figure budget_figure(const PipelineBudget& pipeline) {
         Named{"Physical spread of the exposures", &budget.physical_ms}}) {
     if (std::isnan(error.parts->total.mean)) continue;
     figure.panels.push_back(
-        parts_panel(error.title, error.parts->total, named_parts(*error.parts)));
+        parts_panel(error.title, error.parts->total, named_parts(budget, *error.parts)));
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
   if (host_clock.is_divided) {

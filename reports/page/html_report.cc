@@ -75,8 +75,9 @@ std::string scenario_details(const Archive& archive) {
       Json::parse(archive.scenario_json).dump(2));
 }
 
-bool is_leaderboard(const Archive& archive) {
-  return scenario_text(archive, "/evaluation/table") == to_text(scenarios::TableKind::kLeaderboard);
+scenarios::TableKind table_of(const Archive& archive) {
+  return scenarios::from_text<scenarios::TableKind>(scenario_text(archive, "/evaluation/table"))
+      .value_or(scenarios::TableKind::kPipelines);
 }
 
 // The warnings and tables of a run, a leaderboard or the clocks alone, as their commands print
@@ -89,7 +90,8 @@ std::vector<Block> blocks_of(const Archive& archive) {
   if (!archive.results.warnings.empty()) {
     append({{.heading = "Warnings", .items = archive.results.warnings, .is_warning = true}});
   }
-  if (is_leaderboard(archive)) append(board_blocks(archive.results));
+  if (table_of(archive) == scenarios::TableKind::kLeaderboard)
+    append(board_blocks(archive.results));
   if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
     append(clock_document(clock_results_of(archive), "").blocks);
   } else {
@@ -102,14 +104,13 @@ evaluation::RankedBy ranked_by_of(const Archive& archive) {
   if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
     return evaluation::RankedBy::kClockSpread;
   }
-  return is_leaderboard(archive) ? evaluation::RankedBy::kAbsoluteError
-                                 : evaluation::RankedBy::kAmd;
+  return evaluation::ranked_by(table_of(archive));
 }
 
 // "" of clock runs, whose first table is short.
 std::string archive_summary(const Archive& archive) {
   if (archive.results.kind != evaluation::ResultKind::kCaptures) return "";
-  std::vector<Block> summary = summary_blocks(archive.results, is_leaderboard(archive));
+  std::vector<Block> summary = summary_blocks(archive.results, table_of(archive));
   summary.front().heading = "Summary";
   return html(summary);
 }

@@ -44,8 +44,9 @@ Table budget_table(const Budget& budget) {
                {"absolute error\n5-95 %"},
                {"absolute error\nshare"},
                {"of AMD physical\nmean"}});
-  for (std::size_t stage = 0; stage < evaluation::kStageCount; ++stage) {
-    add_line(table, std::string(evaluation::kStageNames[stage]), budget,
+  for (const evaluation::Stage each : evaluation::stages_of(budget)) {
+    const auto stage = static_cast<std::size_t>(each);
+    add_line(table, std::string(evaluation::stage_name(budget, each)), budget,
              budget.amd_ms.stages[stage], budget.absolute_error_ms.stages[stage],
              budget.physical_ms.stages[stage]);
   }
@@ -85,7 +86,7 @@ std::string budget_legend(const Budget& budget) {
           : "In some of the worlds gathering finds no set, so errors are over the true pulses and "
             "gathering has no part in them.";
   return over +
-         " A stage's part is its Shapley value over all 128 worlds with some stages ideal. Parts "
+         " A stage's part is its Shapley value over all worlds with some stages ideal. Parts "
          "and remainder add up to the total; a part below zero cancels others. Physical: how far "
          "apart the exposures of a pulse really were, which no clock can remove.";
 }
@@ -112,11 +113,11 @@ Json part_json(const BudgetPart& part) {
   return {{"mean", part.mean}, {"p05", part.p05}, {"p95", part.p95}, {"values", part.values}};
 }
 
-Json error_json(const ErrorParts& error) {
+Json error_json(const Budget& budget, const ErrorParts& error) {
   Json stages = Json::array();
-  for (std::size_t stage = 0; stage < evaluation::kStageCount; ++stage) {
-    Json entry = {{"stage", evaluation::kStageNames[stage]}};
-    entry.update(part_json(error.stages[stage]));
+  for (const evaluation::Stage stage : evaluation::stages_of(budget)) {
+    Json entry = {{"stage", evaluation::stage_name(budget, stage)}};
+    entry.update(part_json(error.stages[static_cast<std::size_t>(stage)]));
     stages.push_back(std::move(entry));
   }
   return {{"total", part_json(error.total)},
@@ -164,9 +165,9 @@ std::string budget_json(const BudgetReport& report) {
   for (const auto& [stages, host_clock] : report.budgets) {
     root["budgets"].push_back({{"pipeline", stages.pipeline},
                                {"amd_of_sets", stages.amd_of_sets},
-                               {"amd_ms", error_json(stages.amd_ms)},
-                               {"absolute_error_ms", error_json(stages.absolute_error_ms)},
-                               {"physical_ms", error_json(stages.physical_ms)},
+                               {"amd_ms", error_json(stages, stages.amd_ms)},
+                               {"absolute_error_ms", error_json(stages, stages.absolute_error_ms)},
+                               {"physical_ms", error_json(stages, stages.physical_ms)},
                                {"host_error_ms", host_clock_json(host_clock)}});
   }
   return file_text(root);

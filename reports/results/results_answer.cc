@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "evaluation/run/leaderboard.h"
+#include "reports/results/cables_answer.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -37,7 +38,8 @@ constexpr std::array<const char*, kStageCount> kIdeals = {"pulses on time",
                                                           "perfect camera clocks",
                                                           "frames that arrive without delay",
                                                           "perfect host clocks",
-                                                          "gathering by the true pulse"};
+                                                          "gathering by the true pulse",
+                                                          "frames of any length"};
 
 // "a, b and 7 more".
 std::string some_of(const std::vector<const Row*>& rows) {
@@ -83,10 +85,14 @@ std::string limit_sentence(const Answer& answer) {
                      number_text(answer.times_limit));
 }
 
+const evaluation::ErrorParts& ranked_parts(const Budget& budget, RankedBy ranked_by) {
+  if (ranked_by == RankedBy::kExposureSpread) return budget.physical_ms;
+  return ranked_by == RankedBy::kAmd ? budget.amd_ms : budget.absolute_error_ms;
+}
+
 // What limits it, and what would improve it most.
 std::string budget_sentences(const Answer& answer, const Budget& budget) {
-  const evaluation::ErrorParts& parts =
-      answer.ranked_by == RankedBy::kAmd ? budget.amd_ms : budget.absolute_error_ms;
+  const evaluation::ErrorParts& parts = ranked_parts(budget, answer.ranked_by);
   const double total = parts.total.mean;
   if (!(total > 0)) return "";
   std::array<std::size_t, kStageCount> order{};
@@ -98,14 +104,17 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
     const double share = parts.stages[stage].mean / total;
     if (share < kSmallShare) break;
     shares += fmt::format("{}{} {:.0f} %", shares.empty() ? "" : ", ",
-                          evaluation::kStageNames[stage], 100 * share);
+                          evaluation::stage_name(budget, static_cast<evaluation::Stage>(stage)),
+                          100 * share);
   }
   std::string text = fmt::format("What limits it (error budget over {}): {}.",
                                  counted(parts.total.values.size(), "seed"), shares);
   const auto most = std::ranges::max_element(parts.alone, {}, &evaluation::BudgetPart::mean);
   if (most->mean < kWorthWinning * total) return text;
   const auto stage = static_cast<std::size_t>(most - parts.alone.begin());
-  return text + fmt::format(" Most would be won by {}: {:.0f} % of it.", kIdeals[stage],
+  const bool is_phase = stage == 0 && budget.is_steered;
+  return text + fmt::format(" Most would be won by {}: {:.0f} % of it.",
+                            is_phase ? "perfect phases" : kIdeals[stage],
                             100 * std::min(most->mean / total, 1.0));
 }
 
@@ -133,6 +142,8 @@ const char* ranked_name(RankedBy ranked_by) {
       return "AMD";
     case RankedBy::kAbsoluteError:
       return "absolute error";
+    case RankedBy::kExposureSpread:
+      return "95 % exposure spread";
     case RankedBy::kClockSpread:
       break;
   }
@@ -183,7 +194,12 @@ std::string uncertainty_text(const Answer& answer) {
 AnswerText results_answer(const Results& results, RankedBy ranked_by, const Budget* budget) {
   const Answer answer = evaluation::answer_of(results, ranked_by);
   if (answer.best == nullptr) return {.lead = "No pipeline that a rig can run has a result here."};
-  AnswerText text{.lead = best_sentence(answer)};
+  const bool is_of_cables = ranked_by == RankedBy::kExposureSpread;
+  AnswerText text{.lead = is_of_cables ? cables_text(results) : best_sentence(answer)};
+  if (is_of_cables) {
+    text.add("Best", best_sentence(answer));
+    text.add("Cable", cable_sentence(results));
+  }
   text.add("Others", distance_text(results, answer));
   text.add("Limit", limit_sentence(answer));
   if (budget != nullptr) text.add("Causes", budget_sentences(answer, *budget));

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -64,8 +66,11 @@ void add_published_amd(const Results& results, RowFields& fields) {
 // What a row is among those of its table: the best that a rig can run, a limit, a reference.
 Field<Row> standing_field(const std::vector<const Row*>& rows, RankedBy ranked_by) {
   const Row* const best = evaluation::best_of(rows, ranked_by);
-  return {{.header = "is", .align = Align::kLeft, .is_verdict = true}, [best](const Row& row) {
-            return &row == best ? "best" : evaluation::standing_name(evaluation::standing_of(row));
+  return {{.header = "is", .align = Align::kLeft, .is_verdict = true},
+          [best, ranked_by](const Row& row) {
+            return &row == best
+                       ? "best"
+                       : evaluation::standing_name(evaluation::standing_by(row, ranked_by));
           }};
 }
 
@@ -113,6 +118,25 @@ Block rows_block(const Results& results) {
   return block;
 }
 
+// By the spread of the exposures, the least first; rows without one last.
+Block spread_block(const Results& results) {
+  constexpr RankedBy ranked_by = RankedBy::kExposureSpread;
+  std::vector<const Row*> rows;
+  for (const Row& row : results.rows) rows.push_back(&row);
+  std::ranges::stable_sort(rows, {}, [](const Row* row) {
+    const double spread_ms = evaluation::ranked_series(*row, ranked_by).median;
+    return std::isnan(spread_ms) ? std::numeric_limits<double>::infinity() : spread_ms;
+  });
+  Block block;
+  shorten(rows, kMostSummaryRows, block);
+  RowFields fields = {pipeline_field<Row>(), standing_field(rows, ranked_by)};
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::alignment)) {
+    add_metric(*metric, fields);
+  }
+  block.table = table_of_rows(fields, rows);
+  return block;
+}
+
 Block board_block(const Results& results, const Board& board) {
   std::vector<const Row*> rows;
   for (const std::vector<Rank>* ranks : {&board.online, &board.offline}) {
@@ -156,8 +180,9 @@ void add_failures(const Results& results, Document& document) {
 
 }  // namespace
 
-std::vector<Block> summary_blocks(const Results& results, bool is_leaderboard) {
-  if (!is_leaderboard) return {rows_block(results)};
+std::vector<Block> summary_blocks(const Results& results, scenarios::TableKind table) {
+  if (table == scenarios::TableKind::kPipelines) return {rows_block(results)};
+  if (table == scenarios::TableKind::kAlignment) return {spread_block(results)};
   std::vector<Block> blocks;
   for (const Board& board : evaluation::leaderboard(results)) {
     blocks.push_back(board_block(results, board));
@@ -170,9 +195,11 @@ Document summary_document(const Results& results, const SummaryOptions& options,
   Document document{.title = results_title(results), .head = paragraphs(answer)};
   const std::vector<std::string> head = results_head(results, options.summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
-  document.blocks = summary_blocks(results, options.is_leaderboard);
+  document.blocks = summary_blocks(results, options.table);
   add_failures(results, document);
-  document.blocks.push_back({.prose = summary_legend(results)});
+  const bool is_of_alignment = options.table == scenarios::TableKind::kAlignment;
+  document.blocks.push_back(
+      {.prose = is_of_alignment ? alignment_legend() : summary_legend(results)});
   document.blocks.push_back(
       {.prose = {"More: --verbose has all metrics, their meaning and the paper's claims, --budget "
                  "what each stage costs; --output DIR, then simbench report DIR, the figures."}});

@@ -2,7 +2,8 @@
 //
 // The answer (reports/results/results_answer.h), what the scenario is, and one table with a row per
 // pipeline and the metrics that name it (evaluation::TablePlaces::summary), each value in the unit
-// that fits it. A leaderboard has a short table for each board. Whatever failed is said; so is
+// that fits it. A leaderboard has a short table for each board; a table of alignments has the
+// metrics of exposures, in order of their spread. Whatever failed is said; so is
 // where the rest is. Of many pipelines the first are shown, in order of the answer's metric for
 // leaderboards, else in the scenario's order.
 //
@@ -17,16 +18,17 @@
 #include "evaluation/scoring/results.h"
 #include "reports/text/answer_text.h"
 #include "reports/text/block.h"
+#include "scenarios/choices.h"
 
 namespace simbench::reports {
 
 struct SummaryOptions {
   std::string summary{};  // the scenario's own description
-  bool is_leaderboard = false;
+  scenarios::TableKind table = scenarios::TableKind::kPipelines;
 };
 
 // Its tables.
-std::vector<Block> summary_blocks(const evaluation::Results& results, bool is_leaderboard);
+std::vector<Block> summary_blocks(const evaluation::Results& results, scenarios::TableKind table);
 
 // The default output. `answer` becomes its first paragraph.
 Document summary_document(const evaluation::Results& results, const SummaryOptions& options,

@@ -90,6 +90,7 @@ Exposure SteeredSensor::expose(Nanoseconds exposure) {
   readout_device_ns_ = next_readout_device_ns_;
   readouts_.push_back(readout_);
   if (readouts_.size() > kReadoutsKept) readouts_.pop_front();
+  lengths_.erase(lengths_.begin(), std::prev(lengths_.upper_bound(frame_)));
   single_.erase(single_.begin(), single_.lower_bound(frame_));
   inserted_.erase(inserted_.begin(), inserted_.lower_bound(frame_));
   const TrueTime read = readout_ + from_ns(draws_.normal(settings_.jitter_sigma_ns));
@@ -114,6 +115,7 @@ void SteeredSensor::latch(const FrameCommand& command, TrueTime at, TrueTime mad
   const Nanoseconds length = length_by(command, frame);
   if (frame == frame_ && readout_ + length - exposure_ < made_until) ++frame;
   if (command.kind == FrameControlKind::kFrameLength) {
+    lengths_.erase(lengths_.upper_bound(frame), lengths_.end());
     lengths_[frame] = length;
   } else {
     single_[frame] = length;

@@ -1,5 +1,8 @@
 #include "sim/host/sim_frame_control.h"
 
+#include <string>
+#include <utility>
+
 #include "algorithms/ports/assert.h"
 #include "sim/engine/random.h"
 #include "sim/host/sim_host.h"
@@ -52,7 +55,8 @@ Task<std::optional<FrameArrival>> SimFrameControl::next_frame(SteadyTime deadlin
   co_return frame;
 }
 
-void SimFrameControl::push(const FrameArrival& frame) {
+void SimFrameControl::push(FrameArrival frame) {
+  frame.reading = std::exchange(reading_, std::nullopt);
   if (frames_.size() == kFramesKept) frames_.pop_front();
   frames_.push_back(frame);
   delivered_.notify();
@@ -69,9 +73,9 @@ FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value
   const double delay_ms = model_.delay_ms + draws.exponential(model_.delay_exponential_ms);
   if (!is_lost) {
     const FrameCommand command{.kind = kind, .length = value};
-    host_.world().context.engine().call_at(
-        host_.true_now() + from_ms(delay_ms),
-        [this, command] { host_.world().frames.steer(camera_, command); });
+    host_.world().context.engine().call_at(host_.true_now() + from_ms(delay_ms), [this, command] {
+      host_.world().frames.steer(camera_, command);
+    });
   }
   return {.length = made};
 }

@@ -44,7 +44,9 @@ class SimFrameControl final : public FrameControl {
   Task<FrameControlReply> set_frame_length(Nanoseconds length) override;
   Task<FrameControlReply> start_at(HostTime at) override;
 
-  void push(const FrameArrival& frame);
+  void push(FrameArrival frame);
+  // The next frame brings it along.
+  void read_clock(const CameraClockReading& reading) { reading_ = reading; }
   bool is_awaited() const { return delivered_.waiting(); }
 
  private:
@@ -56,6 +58,7 @@ class SimFrameControl final : public FrameControl {
   FrameControlLimits limits_;
   Nanoseconds steady_length_;  // of the frames, as the last control set it
   std::uint64_t sent_ = 0;
+  std::optional<CameraClockReading> reading_;
   WaitPoint delivered_;
   std::deque<FrameArrival> frames_;
 };

@@ -38,9 +38,10 @@ struct Segment {
   MessageId first = 0;  // number of the first message
   TrueTime left{};
   TrueTime at_switch{};
-  std::int64_t switch_number = 0;  // where it is
-  double bytes = 0;                // of the messages, without headers
-  bool is_counted = true;          // as sent; of the copies of a group's message, one is
+  std::int64_t switch_number = 0;   // where it is
+  bool is_at_access_point = false;  // has passed the air once
+  double bytes = 0;                 // of the messages, without headers
+  bool is_counted = true;           // as sent; of the copies of a group's message, one is
   boost::container::small_vector<Bytes, 1> messages{};
 };
 

@@ -13,6 +13,7 @@ constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
 constexpr ComponentKey kAlignmentDraws("network: capture alignment");
 constexpr ComponentKey kAckDraws("network: acknowledgement");
+constexpr ComponentKey kGroupCellDraws("network: message to a group in the cell");
 
 KeyedStreams draws_of(std::uint64_t run_seed, Transport kind) {
   if (kind == Transport::kAlignment) return KeyedStreams(run_seed, kAlignmentDraws);
@@ -48,6 +49,14 @@ Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint
       handler_id_(engine.attach(*this)),
       host_ports_(hosts),
       switch_ports_(hosts) {
+  if (parameters.wifi) {
+    // Segments and messages to groups have numbers of their own.
+    cell_ = std::make_unique<WifiCell>(
+        engine, *parameters.wifi, run_seed, hosts, [this](std::uint32_t ticket, bool is_lost) {
+          const std::uint32_t id = ticket / 2;
+          ticket % 2 == 0 ? leave_cell(id, is_lost) : leave_cell_as_group(id, is_lost);
+        });
+  }
   const std::vector<std::int64_t>& switches = parameters.switch_of_host;
   if (switches.empty()) return;
   trunk_ports_.resize(2 * static_cast<std::size_t>(*std::ranges::max_element(switches)) + 2);
@@ -87,8 +96,10 @@ void Network::send_segment(Segment&& segment) {
   const MessageId first = segment.first;
   if (catch_up_) catch_up_();
   const TrueTime at_card = engine_.now() + path.sender->to_card(first);
-  const TrueTime passed =
-      rate_.is_infinite() ? at_card : host_ports_[path.from].pass(at_card, on_the_line(segment));
+  const bool wireless = is_wireless(path.from, path.to);
+  const TrueTime passed = passes_port(path.from, wireless)
+                              ? host_ports_[path.from].pass(at_card, on_the_line(segment))
+                              : at_card;
   segment.left = engine_.now();
   segment.at_switch = passed;
   segment.switch_number = switch_of(path.from);
@@ -99,7 +110,9 @@ void Network::send_segment(Segment&& segment) {
     // An acknowledgement that the sender owes leaves with its data.
     if (paths_[path_id ^ 1].nagle->owes_ack()) acknowledge(path_id ^ 1);
   }
-  if (rate_.is_infinite()) {
+  if (wireless) {
+    engine_.schedule(passed, handler_id_, kAtCell, id);
+  } else if (rate_.is_infinite()) {
     travel(id, passed);
   } else {
     engine_.schedule(passed, handler_id_, kAtSwitch, id);
@@ -109,17 +122,20 @@ void Network::send_segment(Segment&& segment) {
 
 void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
                             Bytes message, Endpoint& sender) {
-  Segment segment{.bytes = static_cast<double>(message.size())};
+  Segment segment{.first = id, .bytes = static_cast<double>(message.size())};
   if (catch_up_) catch_up_();
   const TrueTime at_card = engine_.now() + sender.to_card(id);
+  const bool wireless = is_wireless(from, recipients);
   const TrueTime passed =
-      rate_.is_infinite() ? at_card : host_ports_[from].pass(at_card, on_the_line(segment));
+      passes_port(from, wireless) ? host_ports_[from].pass(at_card, on_the_line(segment)) : at_card;
   segment.left = engine_.now();
   segment.at_switch = passed;
   segment.switch_number = switch_of(from);
   segment.messages.push_back(std::move(message));
   GroupMessage to_all{std::move(segment), std::move(recipients)};
-  if (rate_.is_infinite()) {
+  if (wireless) {
+    forward(std::move(to_all), passed, kGroupAtCell);
+  } else if (rate_.is_infinite()) {
     replicate(to_all, passed);
   } else {
     forward(std::move(to_all), passed);
@@ -158,10 +174,103 @@ void Network::replicate(const GroupMessage& message, TrueTime at) {
   }
 }
 
-void Network::forward(GroupMessage message, TrueTime at) {
+void Network::forward(GroupMessage message, TrueTime at, EventKind where) {
   const std::uint32_t id = group_messages_.add();
   group_messages_[id] = std::move(message);
-  engine_.schedule(at, handler_id_, kGroupAtSwitch, id);
+  engine_.schedule(at, handler_id_, where, id);
+}
+
+bool Network::is_wireless(PeerId from, const std::vector<Recipient>& recipients) const {
+  if (cell_ == nullptr) return false;
+  return std::ranges::any_of(recipients, [this, from](const Recipient& recipient) {
+    return is_wireless(from, paths_[recipient.path].to);
+  });
+}
+
+void Network::enter_cell(SegmentId id) {
+  const Segment& segment = segments_[id];
+  const Path& path = paths_[segment.path];
+  const bool is_up = cell_->is_station(path.from) && !segment.is_at_access_point;
+  const bool is_stream = path.transport == Transport::kStream;
+  cell_->send({.ticket = 2 * id,
+               .station = is_up ? path.from : path.to,
+               .is_up = is_up,
+               .bytes = segment.bytes + parameters_.overhead_bytes,
+               .retransmissions = is_stream ? kMaxRetransmissions : 0,
+               .timeout_ms = parameters_.retransmit_timeout_ms,
+               .in_order = segment.path},
+              path.draws.of(segment.first).stream(is_up ? 0 : 1));
+}
+
+void Network::leave_cell(SegmentId id, bool is_lost) {
+  Segment& segment = segments_[id];
+  Path& path = paths_[segment.path];
+  if (is_lost) {
+    path.is_broken = path.transport == Transport::kStream;
+    report(segment, std::nullopt);
+    release(id);
+    return;
+  }
+  const bool is_at_end = segment.is_at_access_point || !cell_->is_station(path.from);
+  segment.is_at_access_point = true;
+  if (!is_at_end && cell_->is_station(path.to)) return enter_cell(id);
+  const TrueTime now = engine_.now();
+  travel(id,
+         passes_port(path.to, true) ? switch_ports_[path.to].pass(now, on_the_line(segment)) : now);
+}
+
+Segment Network::copy_for(const Recipient& recipient, GroupMessage& message) {
+  Segment copy = message.segment;
+  copy.path = recipient.path;
+  copy.first = recipient.id;
+  message.segment.is_counted = false;
+  return copy;
+}
+
+void Network::enter_cell_as_group(std::uint32_t id) {
+  GroupMessage& message = group_messages_[id];
+  const PeerId from = paths_[message.recipients.front().path].from;
+  const bool is_up = cell_->is_station(from) && !message.segment.is_at_access_point;
+  WifiHop hop{.ticket = 2 * id + 1,
+              .station = from,
+              .is_up = is_up,
+              .is_group = !is_up,
+              .bytes = message.segment.bytes + parameters_.overhead_bytes};
+  if (!is_up) {
+    // Those without a radio have it from the access point's switch.
+    const TrueTime now = engine_.now();
+    std::erase_if(message.recipients, [&](const Recipient& recipient) {
+      const PeerId to = paths_[recipient.path].to;
+      if (cell_->is_station(to)) return false;
+      const TrueTime at =
+          passes_port(to, true) ? switch_ports_[to].pass(now, on_the_line(message.segment)) : now;
+      travel(keep(copy_for(recipient, message)), at);
+      return true;
+    });
+    if (message.recipients.empty()) return group_messages_.release(id);
+  }
+  const KeyedStreams draws =
+      KeyedStreams(run_seed_, kGroupCellDraws).of(direction_of(from, Groups::kEveryone));
+  cell_->send(hop, draws.of(message.segment.first).stream(is_up ? 0 : 1));
+}
+
+void Network::leave_cell_as_group(std::uint32_t id, bool is_lost) {
+  GroupMessage& message = group_messages_[id];
+  const PeerId from = paths_[message.recipients.front().path].from;
+  const bool is_up = cell_->is_station(from) && !message.segment.is_at_access_point;
+  if (is_up && !is_lost) {
+    message.segment.is_at_access_point = true;
+    return enter_cell_as_group(id);
+  }
+  for (const Recipient& recipient : message.recipients) {
+    Segment copy = copy_for(recipient, message);
+    if (is_lost) {
+      report(copy, std::nullopt);
+    } else {
+      travel(keep(std::move(copy)), engine_.now());
+    }
+  }
+  group_messages_.release(id);
 }
 
 void Network::send_capture_traffic(PeerId from, double bytes, TrueTime at) {
@@ -179,6 +288,12 @@ void Network::handle(Event event) {
     case kGroupAtSwitch:
       group_messages_.release(event.subject);
       replicate(std::exchange(group_messages_[event.subject], {}), event.time);
+      break;
+    case kAtCell:
+      enter_cell(event.subject);
+      break;
+    case kGroupAtCell:
+      enter_cell_as_group(event.subject);
       break;
     case kArrival:
       arrive(event.subject);

@@ -20,6 +20,10 @@
 // separate messages. Acknowledgements have the latency of their direction and no size; without
 // Nagle they change nothing and are not simulated.
 //
+// In a wireless cell (sim/network/wifi.h) stations have no ports: their messages pass the air
+// first, then the access point and the receiver's port or the air again, and then take the latency
+// of the link. A broadcast that the cell loses is lost for all stations.
+//
 // Hosts and links may stop (sim/faults/faults.h): datagrams to or from them are lost, streams
 // retransmit. A switch with PTP (sim/network/switch_clock.h) corrects datagrams that are event
 // messages for their time in the switch.
@@ -43,11 +47,11 @@
 #ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
 #define SIMBENCH_SIM_NETWORK_NETWORK_H_
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -62,36 +66,11 @@
 #include "sim/network/link_latency.h"
 #include "sim/network/load.h"
 #include "sim/network/nagle.h"
+#include "sim/network/port.h"
 #include "sim/network/switch_clock.h"
+#include "sim/network/wifi.h"
 
 namespace simbench::sim {
-
-class LineRate {
- public:
-  // 0: infinite, nothing waits.
-  explicit LineRate(double mbit_per_s) : ns_per_byte_(mbit_per_s == 0 ? 0 : 8'000 / mbit_per_s) {}
-  bool is_infinite() const { return ns_per_byte_ == 0; }
-  Nanoseconds duration(double bytes) const { return from_ns(bytes * ns_per_byte_); }
-
- private:
-  double ns_per_byte_;
-};
-
-// A port of the switch, or a host's towards it: messages pass one after the other, in order of
-// arrival.
-class Port {
- public:
-  // How long a message that arrives at `at` would wait.
-  Nanoseconds backlog(TrueTime at) const { return free_at_ > at ? free_at_ - at : Nanoseconds(0); }
-  // When a message that arrives at `at` has passed; messages pass in order.
-  TrueTime pass(TrueTime at, Nanoseconds duration) {
-    free_at_ = std::max(free_at_, at) + duration;
-    return free_at_;
-  }
-
- private:
-  TrueTime free_at_ = TrueTime::min();
-};
 
 // An arrived message that was not received yet.
 struct ArrivedMessage {
@@ -180,7 +159,15 @@ class Network : private EventHandler {
   };
   // As Linux' tcp_retries2.
   static constexpr int kMaxRetransmissions = 15;
-  enum EventKind : std::uint16_t { kAtSwitch, kArrival, kAckDue, kAckArrival, kGroupAtSwitch };
+  enum EventKind : std::uint16_t {
+    kAtSwitch,
+    kArrival,
+    kAckDue,
+    kAckArrival,
+    kGroupAtSwitch,
+    kAtCell,
+    kGroupAtCell
+  };
   // A message to a group on its way to the last switch; its segment has no path yet.
   struct GroupMessage {
     Segment segment;
@@ -205,8 +192,27 @@ class Network : private EventHandler {
   // The message, which is at switch `number` of its way, goes to the members' ports there and on to
   // its neighbours.
   void replicate(const GroupMessage& message, TrueTime at);
-  // It comes to its next switch at `at`.
-  void forward(GroupMessage message, TrueTime at);
+  // It comes to its next switch, or to the cell, at `at`.
+  void forward(GroupMessage message, TrueTime at, EventKind where = kGroupAtSwitch);
+
+  // Whether a message passes the air.
+  bool is_wireless(PeerId from, PeerId to) const {
+    return cell_ != nullptr && (cell_->is_station(from) || cell_->is_station(to));
+  }
+  bool is_wireless(PeerId from, const std::vector<Recipient>& recipients) const;
+  // Whether it passes a port of that end of its way, which may have a radio in its place.
+  bool passes_port(PeerId host, bool is_wireless) const {
+    return !rate_.is_infinite() && !(is_wireless && cell_->has_radio(host));
+  }
+  // The message goes up to the access point or, from there on, down to its station.
+  void enter_cell(SegmentId id);
+  void enter_cell_as_group(std::uint32_t id);
+  // It has passed the cell, up or down, or was lost in it.
+  void leave_cell(SegmentId id, bool is_lost);
+  void leave_cell_as_group(std::uint32_t id, bool is_lost);
+  // The copy for one of the members; the first one counts.
+  static Segment copy_for(const Recipient& recipient, GroupMessage& message);
+
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
   // Counts the segment's messages and reports to the observer that they arrive then, or never.
   void report(const Segment& segment, std::optional<TrueTime> arrival);
@@ -235,7 +241,8 @@ class Network : private EventHandler {
   HandlerId handler_id_;
   std::vector<Port> host_ports_;
   std::vector<Port> switch_ports_;
-  std::vector<Port> trunk_ports_;  // of switch s: 2 s towards s - 1, 2 s + 1 towards s + 1
+  std::unique_ptr<WifiCell> cell_;  // null: all hosts are wired
+  std::vector<Port> trunk_ports_;   // of switch s: 2 s towards s - 1, 2 s + 1 towards s + 1
   std::deque<Path> paths_;
   std::unordered_map<std::uint64_t, PathId> path_ids_[3];  // by transport, then direction
   Slots<Segment> segments_;

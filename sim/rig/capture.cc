@@ -151,7 +151,8 @@ void Capture::report_poll(const CameraPoll& poll) {
                  .t0 = interfaces_[host].read(clock.read(begin)),
                  .t1 = interfaces_[host].read(clock.read(end)),
                  .t0_steady = clock.steady(begin),
-                 .t1_steady = clock.steady(end)});
+                 .t1_steady = clock.steady(end)},
+                static_cast<std::uint32_t>(host));
 }
 
 // Those of this period until `last`, at least one.
@@ -199,17 +200,17 @@ void Capture::stamp(const CameraFrame& frame, const FrameStamps& stamps) {
   const SystemClock::Reading exposed = clock.read_both(middle);
   const bool is_master = frame.host == 0;
   const bool on_host = stamps_on_host_;
-  records_.push_back({.camera = frame.camera,
-                      .stream = frame.kind,
-                      .counter = frame.counter,
-                      .exposure_us = frame.exposure_us,
-                      .sensor = on_host ? host_stamp(frame, exposed.steady) : stamps.sensor,
-                      .frame = on_host ? host_stamp(frame, clock.steady(date(frame.readout_start)))
-                                       : stamps.frame,
-                      .backend = backend_stamps_.stamp(clock, steady_starts_[frame.host],
-                                                       date(frame.copied), arrival),
-                      .arrival = round_down(arrival.system, arrival_quantum_),
-                      .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
+  records_.push_back(
+      {.camera = frame.camera,
+       .stream = frame.kind,
+       .counter = frame.counter,
+       .exposure_us = frame.exposure_us,
+       .sensor = on_host ? host_stamp(frame, exposed.steady) : stamps.sensor,
+       .frame = on_host ? host_stamp(frame, clock.steady(date(frame.readout_start))) : stamps.frame,
+       .backend =
+           backend_stamps_.stamp(clock, steady_starts_[frame.host], date(frame.copied), arrival),
+       .arrival = round_down(arrival.system, arrival_quantum_),
+       .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
   truths_.push_back({.pulse = frame.pulse,
                      .exposure_start = date(frame.exposure_start),
                      .exposure_end = date(frame.exposure_end),

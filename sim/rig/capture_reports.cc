@@ -63,6 +63,14 @@ void FrameFeeds::on_delivery(const FrameRecord& record, const CameraStream& stre
   if (control != nullptr) control->push(frame);
 }
 
+void FrameFeeds::on_poll(const DevicePoll& poll, std::uint32_t host) {
+  if (!is_open()) return;
+  SimFrameControl* const control = hosts_.host(host).frame_control(poll.camera);
+  if (control == nullptr) return;
+  control->read_clock(
+      {.device = poll.device, .t0_steady = poll.t0_steady, .t1_steady = poll.t1_steady});
+}
+
 void CaptureReports::start(TrueTime at) const {
   if (observer_ != nullptr) observer_->on_capture_start(at);
 }

@@ -41,6 +41,7 @@ class FrameFeeds {
   bool is_awaited() const;
 
   void on_delivery(const FrameRecord& record, const CameraStream& stream, TrueTime at);
+  void on_poll(const DevicePoll& poll, std::uint32_t host);
 
  private:
   HostGroup& hosts_;
@@ -62,7 +63,10 @@ class CaptureReports {
   void pulse(std::int64_t slot, TrueTime at) const;
   // A pulse of the evaluated frames, for the recording.
   void recorded_pulse(const PulseTruth& pulse) const { sink_.on_pulse(pulse); }
-  void poll(const DevicePoll& poll) const { sink_.on_poll(poll); }
+  void poll(const DevicePoll& poll, std::uint32_t host) const {
+    sink_.on_poll(poll);
+    if (feeds_ != nullptr) feeds_->on_poll(poll, host);
+  }
   // Whether somebody besides the recording wants frames: then a block has one frame.
   bool are_single() const {
     return observer_ != nullptr || (feeds_ != nullptr && feeds_->is_used());

@@ -36,14 +36,19 @@ DeviceTimeEntry constant(const std::string& name) {
 
 TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
   std::vector<std::string> device_time = entry_names(device_time_algorithms());
-  device_time.resize(20);  // other tests may have registered more
+  device_time.resize(21);  // other tests may have registered more
   EXPECT_THAT(
       device_time,
       ElementsAre("regression_30", "regression_offline", "eq1_printed", "eq1_interval_previous",
                   "eq1_interval_current", "raw_arrival", "sensor_normalised", "oracle",
                   "regression_300", "regression_all", "hull_300", "hull_switch_10s",
                   "hull_switch_60s", "hull_offline", "two_way_poll", "olson_50ppm", "minimum_1s",
-                  "theil_sen_300", "kalman", "librealsense_global"));
+                  "theil_sen_300", "kalman", "librealsense_global", "host_stamps"));
+  std::vector<std::string> alignments = entry_names(capture_alignment_algorithms());
+  alignments.resize(8);  // likewise
+  EXPECT_THAT(alignments, ElementsAre("free_run", "oracle", "libsoftwaresync", "rpi_sync",
+                                      "scheduled_action", "periodic_ptp", "pid_frame_rate",
+                                      "phase_rate"));
   EXPECT_THAT(entry_names(gathering_algorithms()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",

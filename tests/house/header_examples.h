@@ -241,6 +241,7 @@ extern Cpu cpu;
 extern SimHost& host;
 extern const TriggerLine& trigger_line;
 extern const DriftFiles& drift_files;
+extern const scenarios::Wifi wifi;
 extern const scenarios::LeapSecond leap;
 extern SystemClock& leaping_clock;
 extern const HostTime zero;

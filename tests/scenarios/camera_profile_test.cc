@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -26,19 +27,20 @@ void require_all(json& node) {
   if (node.contains("properties")) {
     EXPECT_EQ(node["additionalProperties"], false) << node.dump();
     for (auto& [key, child] : node["properties"].items()) {
-      if (!node.contains("x-optional") || node["x-optional"][0] != key) {
-        node["required"].push_back(key);
-      }
+      const json optional = node.value("x-optional", json::array());
+      if (std::ranges::count(optional, json(key)) == 0) node["required"].push_back(key);
       require_all(child);
     }
   }
   if (node.contains("items")) require_all(node["items"]);
 }
 
-TEST(CameraProfiles, ThoseOfThePaperAreThere) {
+TEST(CameraProfiles, AllAreThereInOrder) {
   std::vector<std::string> models;
   for (const CameraProfile& camera : camera_profiles()) models.push_back(camera.model);
-  EXPECT_THAT(models, ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "l515"));
+  EXPECT_THAT(models,
+              ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "gige_ace",
+                          "l515", "oak_4", "pixel_phone", "raspberry_camera_v3"));
 }
 
 TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
@@ -78,7 +80,9 @@ TEST(CameraProfiles, AreConsistent) {
     std::set<std::string> stamps;
     for (const StampProfile& stamp : nonempty(camera.stamps)) {
       EXPECT_TRUE(stamps.insert(stamp.stamp).second) << stamp.stamp;
-      EXPECT_EQ(stamp.clock == "camera", stamp.stamp == "sensor" || stamp.stamp == "frame");
+      if (stamp.clock == "host") continue;  // all, of a camera that is a computer itself
+      EXPECT_EQ(stamp.clock, "camera");
+      EXPECT_TRUE(stamp.stamp == "sensor" || stamp.stamp == "frame") << stamp.stamp;
     }
   }
 }
@@ -157,6 +161,28 @@ TEST(CameraProfiles, FocalLengthOfDepth) {
       EXPECT_EQ(size.focal_px, 0) << camera.model;
   }
   EXPECT_GT(colour_streams, 0);
+}
+
+// docs/reference/capture_alignment.md, sections 1 to 4 and 9.
+TEST(CameraProfiles, ControlsOfFramesThatTheMakersOffer) {
+  const auto offered = [](const char* model) {
+    const std::optional<FrameControlProfile>& control = find_camera_profile(model)->frame_control;
+    std::string text;
+    if (!control) return std::string("not known");
+    EXPECT_FALSE(control->source.empty()) << model;
+    if (control->adjust_frame) text += "adjust ";
+    if (control->insert_frame) text += "insert ";
+    if (control->frame_length) text += "length ";
+    if (control->start_at) text += "start ";
+    return text;
+  };
+  EXPECT_EQ(offered("d455"), "");
+  EXPECT_EQ(offered("d435"), "");
+  EXPECT_EQ(offered("pixel_phone"), "insert length ");
+  EXPECT_EQ(offered("raspberry_camera_v3"), "adjust length ");
+  EXPECT_EQ(offered("gige_ace"), "adjust length start ");
+  EXPECT_EQ(offered("oak_4"), "length ");
+  EXPECT_EQ(offered("azure_kinect"), "not known");
 }
 
 TEST(CameraProfiles, JsonHasThemAll) {

@@ -58,10 +58,33 @@ json full_document() {
                            "asymmetry_ms": 0.5}]},
     "usb": {"delivery_quantiles_ms": [0, 0.3], "delivery_correlation": 0.1},
     "cameras": {"oscillator": {"class": "ocxo"}, "host_of_camera": [0,0,0, 1,1,1, 2,2,2, 3,3,3, 4,4,4, 5,5,5],
-                "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3]},
+                "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3],
+                "stamp_clock": "host",
+                "frame_control": {
+                  "adjust_frame": true, "insert_frame": true, "frame_length": true,
+                  "start_at": true, "granularity_us": 10, "shortest_ms": 5, "longest_ms": 50,
+                  "latency_frames": 2, "delay_ms": 1, "delay_exponential_ms": 1,
+                  "loss_probability": 0, "insert_stretches": 1, "insert_noise_sigma_us": 1,
+                  "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1}},
     "studio": )" + studio_of("18cam_6host_30fps_studio"));
   json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
-  // Beside which no link has a latency of its own, which only the checks say.
+  // Beside which there is no wireless cell, and no link has a latency of its own, which only the
+  // checks say.
+  document["network"]["wifi"] = {
+      {"access_point_host", 0},
+      {"wired_hosts", {5}},
+      {"rate_mbit_per_s", 54},
+      {"basic_rate_mbit_per_s", 6},
+      {"preamble_us", 20},
+      {"sifs_us", 16},
+      {"slot_us", 9},
+      {"contention_window_min", 15},
+      {"contention_window_max", 1023},
+      {"retry_limit", 7},
+      {"collision_probability", 0},
+      {"busy", {{"rate_hz", 0.1}, {"duration_exponential_ms", 100}, {"latency_ms", 20}}},
+      {"power_save",
+       {{"idle_ms", 100}, {"beacon_interval_ms", 102.4}, {"dtim_period", 1}, {"wake_up_ms", 2}}}};
   document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
   json& stream = document["cameras"]["streams"][0];
   stream["calibrated_delay_ms"] = 10.5;
@@ -69,6 +92,7 @@ json full_document() {
   json& polls = document["cameras"]["clock_poll"];
   polls["calibrated_asymmetry_ms"] = 0.25;
   polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
+  document["pipelines"][0]["capture_alignment"] = "free_run";
   document["pipelines"][0]["host_sync"] = {
       {"program",
        {{"master", json::array({json::array({"chronyd", "-d"})})},
@@ -207,6 +231,8 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<Hosts>();
   expect_all_members_written<Burst>();
   expect_all_members_written<Link>();
+  expect_all_members_written<WifiPowerSave>();
+  expect_all_members_written<Wifi>();
   expect_all_members_written<Network>();
   expect_all_members_written<TriggerPause>();
   expect_all_members_written<Trigger>();
@@ -215,6 +241,7 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<PollDelays>();
   expect_all_members_written<ClockPoll>();
   expect_all_members_written<CalibrationError>();
+  expect_all_members_written<FrameControlModel>();
   expect_all_members_written<BackendStamp>();
   expect_all_members_written<Cameras>();
   expect_all_members_written<Usb>();
@@ -239,6 +266,7 @@ TEST(SchemaDrift, ChoicesHaveTheWordsOfTheSchema) {
       {"/cameras/sync_mode", all_texts<SyncMode>()},
       {"/cameras/streams/*/kind", all_texts<StreamKind>()},
       {"/cameras/streams/*/shutter", all_texts<ShutterKind>()},
+      {"/cameras/stamp_clock", all_texts<StampClock>()},
       {"/usb/sharing", all_texts<UsbSharing>()},
       {"/evaluation/stream", all_texts<StreamKind>()},
       {"/evaluation/table", all_texts<TableKind>()},

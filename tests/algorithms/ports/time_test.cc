@@ -5,6 +5,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace simbench {
@@ -32,6 +33,18 @@ TEST(Time, NanosecondsAreRoundedAsTheStandardLibraryRounds) {
       EXPECT_EQ(static_cast<double>(from_ns_up(ns).count()), std::ceil(ns)) << ns;
     }
   }
+}
+
+// The register shows the low 32 bits of whole microseconds of the steady clock.
+TEST(Time, AStampOfASteadyClockIsTheNearestReading) {
+  const auto at = [](std::int64_t ns) { return SteadyTime(Nanoseconds(ns)); };
+  EXPECT_EQ(age_of({.us = 70}, at(100'999)), Nanoseconds(30'999));
+  EXPECT_EQ(steady_of({.us = 70}, at(100'999)), at(70'000));
+  EXPECT_EQ(steady_of({.us = 130}, at(100'999)), at(130'000)) << "later";
+  EXPECT_EQ(steady_of({.us = 0xffff'fff0}, at(5'000)), at(-16'000)) << "before the wrap";
+  EXPECT_EQ(steady_of({.us = 5}, at(kDeviceRegisterNs - 1'000)), at(kDeviceRegisterNs + 5'000));
+  EXPECT_EQ(steady_of({.us = 5}, at(-1'500)), at(5'000));
+  EXPECT_EQ(age_of({.us = 5}, at(-1'500)), Nanoseconds(-6'500));
 }
 
 TEST(Time, FloorDivisionRoundsDown) {

@@ -200,6 +200,13 @@ TEST(NetworkLaw, WhatARelayCannotImitateIsRefused) {
               HasSubstr("port_asymmetry_sigma_ms"));
   EXPECT_THAT(law_refusal("/network/links", R"([{"host": 1}])"), HasSubstr("found 1 links"));
   EXPECT_THAT(law_refusal("/network/switch_residence_ms", "0.002"), HasSubstr("residence"));
+  EXPECT_THAT(law_refusal("/network/wifi",
+                          R"({"rate_mbit_per_s": 54, "basic_rate_mbit_per_s": 6, "preamble_us": 20,
+                              "sifs_us": 16, "slot_us": 9, "contention_window_min": 15,
+                              "contention_window_max": 1023, "retry_limit": 7,
+                              "collision_probability": 0, "busy": {"rate_hz": 0,
+                              "duration_exponential_ms": 0, "latency_ms": 0}})"),
+              HasSubstr("found a wireless cell"));
   EXPECT_THAT(law_refusal("/network/switch_of_host", "[0, 0, 0, 1, 1, 1]"),
               HasSubstr("allowed where a relay imitates the network: one"));
 }

@@ -1,0 +1,97 @@
+// Frames on a grid of the common clock, as cameras make them that trigger themselves from a PTP
+// clock (Basler's Synchronous Free Run with a start time of 0, and its like).
+//
+// A camera's k-th instant is k periods after the zero of the master's clock, on every host. The
+// error of a frame against the nearest instant is taken off the length of one frame, all of it, in
+// the direction that needs fewer frames; then the algorithm waits until the stamps show what that
+// did. So a control that was lost, or a camera's own rate, is corrected with the next one. What is
+// below half a granule stays.
+//
+// The period is the cameras' nominal one and not the granule nearest to it, so that cameras of
+// different granularities keep the same grid: an ace has it from its clock of 1 ns.
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "algorithms/capture_alignment/steered_camera.h"
+#include "algorithms/registry.h"
+
+namespace simbench {
+namespace {
+
+const char* const kBasler = "docs.baslerweb.com, Synchronous Free Run";
+
+// Frames until a move is done, of which each can make a part.
+std::int64_t frames_for(Nanoseconds move, Nanoseconds room) {
+  if (room.count() <= 0) return std::numeric_limits<std::int64_t>::max();
+  return (move.count() + room.count() - 1) / room.count();
+}
+
+// By how much the next frame is to be longer for a frame that is late by `error`.
+Nanoseconds grid_correction(const SteeredCamera& camera, Nanoseconds error, Nanoseconds period) {
+  const Nanoseconds earlier = error.count() > 0 ? error : error + period;
+  const Nanoseconds later = period - earlier;
+  const Nanoseconds shorter = camera.length() - camera.shortest();
+  const Nanoseconds longer = camera.longest() - camera.length();
+  const std::int64_t frames_earlier = frames_for(earlier, shorter);
+  const std::int64_t frames_later = frames_for(later, longer);
+  const bool is_later =
+      frames_later != frames_earlier ? frames_later < frames_earlier : later < earlier;
+  return is_later ? std::min(later, longer) : -std::min(earlier, shorter);
+}
+
+std::string in_ms(Nanoseconds time) { return std::to_string(to_ms(time)) + " ms"; }
+
+// Why no frame of the camera can follow the grid, empty if some can.
+std::string unreachable(const SteeredCamera& camera, Nanoseconds period) {
+  const Nanoseconds shortest = camera.shortest();
+  const Nanoseconds longest = camera.longest();
+  if (period >= shortest && period <= longest && shortest < longest) return "";
+  return "found a period of " + in_ms(period) + ", allowed: from " + in_ms(shortest) + " to " +
+         in_ms(longest) + "; choose another rate or exposure";
+}
+
+Task<void> follow_grid(Host& host, FrameControl& control, Nanoseconds tolerance) {
+  SteeredCamera camera(host, control);
+  const Nanoseconds period = camera.limits().frame_length;
+  if (std::string why = unreachable(camera, period); !why.empty()) {
+    camera.report(false, std::move(why));
+    co_return;
+  }
+  while (true) {
+    const ExposedFrame frame = co_await camera.next_frame();
+    if (!camera.is_settled(frame)) continue;
+    const Nanoseconds error = phase_error(frame.exposed.time_since_epoch(), period);
+    const bool is_aligned = std::chrono::abs(error) <= tolerance;
+    camera.report(is_aligned, is_aligned ? "" : "on its way to the grid");
+    if (2 * std::chrono::abs(error) <= camera.limits().granularity) continue;
+    const bool is_taken = co_await camera.adjust_frame(grid_correction(camera, error, period));
+    if (!is_taken) co_return;
+  }
+}
+
+}  // namespace
+
+std::vector<CaptureAlignmentEntry> capture_alignment_periodic_ptp() {
+  CaptureAlignmentEntry entry;
+  entry.info.name = "periodic_ptp";
+  entry.info.family = "periodic_ptp";
+  entry.info.summary = "frames on a grid of the common clock, each error taken off one frame";
+  entry.info.source = kBasler;
+  entry.info.parameters = {number_parameter("tolerance_us", 100, 0, 1e6,
+                                            "a frame nearer to the grid is aligned", kAssumption)};
+  entry.info.needs = {Need::kFrameControl};
+  entry.make = [](const Parameters& parameters) {
+    const Nanoseconds tolerance = from_us(parameters.number("tolerance_us"));
+    return std::make_unique<EachCamera>([tolerance](Host& host, FrameControl& camera) {
+      return follow_grid(host, camera, tolerance);
+    });
+  };
+  return {entry};
+}
+
+}  // namespace simbench

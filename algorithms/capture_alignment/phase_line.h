@@ -1,0 +1,84 @@
+// The course of one camera's exposures against a grid of the common time: phase and rate together.
+//
+// The exposure of frame n is due at a multiple of the grid's period; its error is how late it is.
+// Controls move exposures by known amounts. Without these moves the errors of successive frames lie
+// on a line whose slope is the difference of the rates. It is fitted by least squares over the last
+// frames, so that the error of a frame to come is known better than any one stamp tells it.
+//
+// Frames are numbered by the camera's counter, so lost ones do no harm. The first frame fixes which
+// multiple it is due at, the nearest; the errors of later ones may exceed a period.
+//
+// A move that was less or more than was said (a control was lost, a frame is longer than it should
+// be) shows as a surprise: the last stamps lie off the line together. restart() then begins a new
+// line with the stamps to come.
+//
+// Units: nanoseconds. Cost: O(1) a frame. Source: least squares;
+// docs/reference/capture_alignment.md section 10.
+//
+//   PhaseLine line(from_ms(33), 300);
+//   line.add(counter, exposed);
+//   const double late_ns = line.error_ns(counter + 5);
+#ifndef SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
+#define SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "algorithms/device_time/line_fit.h"
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+class PhaseLine {
+ public:
+  // `window`: frames that are used, at least 2.
+  PhaseLine(Nanoseconds period, std::size_t window);
+
+  // That frame's exposure on the common time. Counters rise.
+  void add(std::uint32_t counter, HostTime exposed);
+  // Frames from this counter on are later by so much than they would have been.
+  void move(std::uint32_t from_counter, Nanoseconds by);
+  // Frames are due so many periods later: after a move by whole periods.
+  void shift_grid(std::int64_t periods) { zero_ += periods * period_; }
+  // Begins a new line with the frames to come, on the same grid.
+  void restart();
+
+  // Of the present line.
+  std::size_t frames() const { return frames_; }
+  // How late the exposure of that frame is, by the line and the moves; 0 without frames.
+  double error_ns(std::uint32_t counter) const;
+  // Change of the error from frame to frame, without moves.
+  double slope_ns() const { return line_.slope; }
+  // Mean absolute distance of the stamps from the line as it was before each; 0 at first.
+  double noise_ns() const { return noise_ns_; }
+  // Whether the last stamps lie off the line together, by more than `least_ns` and their noise.
+  bool is_surprised(double least_ns) const;
+
+ private:
+  static constexpr std::size_t kRecent = 6;
+  struct Move {
+    std::uint32_t from = 0;
+    std::int64_t by_ns = 0;
+  };
+
+  std::int64_t moved_ns(std::uint32_t counter) const;
+
+  Nanoseconds period_;
+  std::size_t window_;
+  bool has_zero_ = false;
+  std::uint32_t zero_counter_ = 0;
+  HostTime zero_{};  // when the first frame was due
+  LineWindow fit_;
+  Line line_;
+  std::size_t frames_ = 0;
+  double noise_ns_ = 0;
+  std::array<double, kRecent> recent_ns_{};  // last distances from the line, a ring
+  std::deque<Move> moves_;
+  std::int64_t old_moves_ns_ = 0;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
