@@ -21,8 +21,8 @@ class Unaligned final : public CaptureAlignment {
   Steering steering_;
 };
 
-CaptureAlignmentEntry limit(const char* name, const char* summary, Steering steering,
-                            std::vector<Need> needs) {
+CaptureAlignmentEntry alignment_limit(const char* name, const char* summary, Steering steering,
+                                      std::vector<Need> needs) {
   CaptureAlignmentEntry entry;
   entry.info.name = name;
   entry.info.family = "limits";
@@ -36,10 +36,10 @@ CaptureAlignmentEntry limit(const char* name, const char* summary, Steering stee
 }  // namespace
 
 std::vector<CaptureAlignmentEntry> capture_alignment_limits() {
-  return {limit("free_run", "nobody steers: each camera runs by its own oscillator",
-                Steering::kByControls, {Need::kFrameControl}),
-          limit("oracle", "all cameras expose at once, each to its nearest granule",
-                Steering::kIdeal, {Need::kFrameControl, Need::kTruth})};
+  return {alignment_limit("free_run", "nobody steers: each camera runs by its own oscillator",
+                          Steering::kByControls, {Need::kFrameControl}),
+          alignment_limit("oracle", "all cameras expose at once, each to its nearest granule",
+                          Steering::kIdeal, {Need::kFrameControl, Need::kTruth})};
 }
 
 }  // namespace simbench

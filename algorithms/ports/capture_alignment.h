@@ -1,5 +1,5 @@
-// Stage capture_alignment, between host_sync and device_time: can cameras without a trigger cable be
-// made to expose at the same time?
+// Stage capture_alignment, between host_sync and device_time: can cameras without a trigger cable
+// be made to expose at the same time?
 //
 // A CaptureAlignment steers the exposures of running cameras (frame_control.h), written as
 // coroutines over the ports as a HostSync is. One coroutine runs on each host, beside host_sync's,
@@ -11,8 +11,8 @@
 //
 // What it thinks it has reached, it reports with Host::report_alignment(), as often as it changes
 // its mind: a camera that is reported as aligned and is not, is a wrong lock, and counted.
-// A control that a camera lacks, a grid that its rate cannot reach: report it as not aligned, with a
-// message that says what would help. Never throw for it.
+// A control that a camera lacks, a grid that its rate cannot reach: report it as not aligned, with
+// a message that says what would help. Never throw for it.
 //
 //   class Nothing : public CaptureAlignment {
 //     Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }

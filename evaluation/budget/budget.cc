@@ -237,7 +237,7 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
   return world;
 }
 
-std::vector<Stage> stages_of(const Budget& budget) {
+std::vector<Stage> budget_stages(const Budget& budget) {
   std::vector<Stage> stages;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     const auto each = static_cast<Stage>(stage);

@@ -120,7 +120,7 @@ struct Budget {
 
 // The stages that a budget has, in order, and their names: the trigger of a steered pipeline is the
 // "phase" of its alignment.
-std::vector<Stage> stages_of(const Budget& budget);
+std::vector<Stage> budget_stages(const Budget& budget);
 std::string_view stage_name(const Budget& budget, Stage stage);
 
 // How often a budget of these pipelines scores each at a seed.

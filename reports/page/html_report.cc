@@ -75,7 +75,7 @@ std::string scenario_details(const Archive& archive) {
       Json::parse(archive.scenario_json).dump(2));
 }
 
-scenarios::TableKind table_of(const Archive& archive) {
+scenarios::TableKind table_kind_of(const Archive& archive) {
   return scenarios::from_text<scenarios::TableKind>(scenario_text(archive, "/evaluation/table"))
       .value_or(scenarios::TableKind::kPipelines);
 }
@@ -90,7 +90,7 @@ std::vector<Block> blocks_of(const Archive& archive) {
   if (!archive.results.warnings.empty()) {
     append({{.heading = "Warnings", .items = archive.results.warnings, .is_warning = true}});
   }
-  if (table_of(archive) == scenarios::TableKind::kLeaderboard)
+  if (table_kind_of(archive) == scenarios::TableKind::kLeaderboard)
     append(board_blocks(archive.results));
   if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
     append(clock_document(clock_results_of(archive), "").blocks);
@@ -104,13 +104,13 @@ evaluation::RankedBy ranked_by_of(const Archive& archive) {
   if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
     return evaluation::RankedBy::kClockSpread;
   }
-  return evaluation::ranked_by(table_of(archive));
+  return evaluation::ranked_by(table_kind_of(archive));
 }
 
 // "" of clock runs, whose first table is short.
 std::string archive_summary(const Archive& archive) {
   if (archive.results.kind != evaluation::ResultKind::kCaptures) return "";
-  std::vector<Block> summary = summary_blocks(archive.results, table_of(archive));
+  std::vector<Block> summary = summary_blocks(archive.results, table_kind_of(archive));
   summary.front().heading = "Summary";
   return html(summary);
 }

@@ -37,8 +37,7 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
 
 Nanoseconds SimChannel::occupancy(MessageId id) const {
   const HostWorld& world = host_.world();
-  RandomStream draw(world.run_seed,
-send_cost_key(transport_), direction_of(host_.id(), peer_), id);
+  RandomStream draw(world.run_seed, send_cost_key(transport_), direction_of(host_.id(), peer_), id);
   return from_ms(send_cost_ms_ + draw.exponential(world.hosts.send_cost_exponential_ms));
 }
 

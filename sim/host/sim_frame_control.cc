@@ -11,7 +11,7 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kControl("camera: control of its frames");
-constexpr std::size_t kFramesKept = 1024;
+constexpr std::size_t kFramesOfCamera = 1024;
 constexpr Nanoseconds kBeforeStart = std::chrono::milliseconds(10);
 
 RandomStream control_draws(std::uint64_t run_seed, std::uint32_t camera, std::uint64_t number) {
@@ -57,7 +57,7 @@ Task<std::optional<FrameArrival>> SimFrameControl::next_frame(SteadyTime deadlin
 
 void SimFrameControl::push(FrameArrival frame) {
   frame.reading = std::exchange(reading_, std::nullopt);
-  if (frames_.size() == kFramesKept) frames_.pop_front();
+  if (frames_.size() == kFramesOfCamera) frames_.pop_front();
   frames_.push_back(frame);
   delivered_.notify();
 }

@@ -28,14 +28,15 @@ namespace simbench::sim {
 
 class ReferencePulses {
  public:
-  ReferencePulses(TrueTime first_due, Nanoseconds period) : first_due_(first_due), period_(period) {}
+  ReferencePulses(TrueTime first_due, Nanoseconds period)
+      : first_due_(first_due), period_(period) {}
 
   void add(TrueTime middle) {
-    const std::int64_t number = pulses_.empty()
-                                    ? periods_between(first_due_, middle)
-                                    : pulses_.back().number +
-                                          std::max<std::int64_t>(
-                                              1, periods_between(pulses_.back().middle, middle));
+    const std::int64_t number =
+        pulses_.empty()
+            ? periods_between(first_due_, middle)
+            : pulses_.back().number +
+                  std::max<std::int64_t>(1, periods_between(pulses_.back().middle, middle));
     pulses_.push_back({middle, number});
     if (pulses_.size() > kKept) pulses_.pop_front();
   }
@@ -43,9 +44,9 @@ class ReferencePulses {
   // kNoPulse if it would be before slot 0, or there is no reference yet.
   std::int64_t pulse_of(TrueTime middle) const {
     if (pulses_.empty()) return kNoPulse;
-    const auto later = std::upper_bound(
-        pulses_.begin(), pulses_.end(), middle,
-        [](TrueTime at, const Pulse& pulse) { return at < pulse.middle; });
+    const auto later =
+        std::upper_bound(pulses_.begin(), pulses_.end(), middle,
+                         [](TrueTime at, const Pulse& pulse) { return at < pulse.middle; });
     if (later == pulses_.begin()) return number_from(*later, middle);
     const Pulse& earlier = *(later - 1);
     if (later == pulses_.end()) return number_from(earlier, middle);

@@ -5,16 +5,16 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kPeriod = std::chrono::milliseconds(30);
+constexpr Nanoseconds kFramePeriod = std::chrono::milliseconds(30);
 
 // The exposure of frame `counter` of a camera that is 40 us later with every 1000 frames.
 HostTime exposed(std::uint32_t counter, Nanoseconds moved = Nanoseconds(0)) {
-  return HostTime(std::chrono::hours(1)) + counter * kPeriod + from_us(500) +
+  return HostTime(std::chrono::hours(1)) + counter * kFramePeriod + from_us(500) +
          Nanoseconds(40 * counter) + moved;
 }
 
 TEST(PhaseLine, ForetellsPhaseAndRateTogether) {
-  PhaseLine line(kPeriod, 100);
+  PhaseLine line(kFramePeriod, 100);
   for (std::uint32_t n = 1000; n < 1050; ++n) line.add(n, exposed(n));
   EXPECT_NEAR(line.slope_ns(), 40, 1e-9);
   EXPECT_NEAR(line.error_ns(1100), 500'000 + 40 * 1100, 1e-3);
@@ -22,13 +22,13 @@ TEST(PhaseLine, ForetellsPhaseAndRateTogether) {
 }
 
 TEST(PhaseLine, LostFramesDoNoHarm) {
-  PhaseLine line(kPeriod, 100);
+  PhaseLine line(kFramePeriod, 100);
   for (std::uint32_t n = 0; n < 60; n += n % 7 == 0 ? 3 : 1) line.add(n, exposed(n));
   EXPECT_NEAR(line.error_ns(100), 500'000 + 4000, 1e-3);
 }
 
 TEST(PhaseLine, KnowsTheMoves) {
-  PhaseLine line(kPeriod, 100);
+  PhaseLine line(kFramePeriod, 100);
   for (std::uint32_t n = 0; n < 20; ++n) line.add(n, exposed(n));
   line.move(25, from_us(-300));
   EXPECT_NEAR(line.error_ns(24), 500'000 + 960, 1e-3);
@@ -41,7 +41,7 @@ TEST(PhaseLine, KnowsTheMoves) {
 }
 
 TEST(PhaseLine, IsSurprisedByALostControlAndBeginsAnew) {
-  PhaseLine line(kPeriod, 100);
+  PhaseLine line(kFramePeriod, 100);
   for (std::uint32_t n = 0; n < 20; ++n) line.add(n, exposed(n));
   line.move(20, from_us(-300));
   for (std::uint32_t n = 20; n < 26; ++n) line.add(n, exposed(n));
@@ -54,12 +54,12 @@ TEST(PhaseLine, IsSurprisedByALostControlAndBeginsAnew) {
 }
 
 TEST(PhaseLine, AMoveByAPeriodShiftsTheGrid) {
-  PhaseLine line(kPeriod, 100);
+  PhaseLine line(kFramePeriod, 100);
   for (std::uint32_t n = 0; n < 20; ++n) line.add(n, exposed(n));
-  line.move(20, kPeriod - from_us(500));
+  line.move(20, kFramePeriod - from_us(500));
   line.shift_grid(1);
   line.restart();
-  for (std::uint32_t n = 20; n < 40; ++n) line.add(n, exposed(n, kPeriod - from_us(500)));
+  for (std::uint32_t n = 20; n < 40; ++n) line.add(n, exposed(n, kFramePeriod - from_us(500)));
   EXPECT_NEAR(line.error_ns(40), 1600, 1e-3);
 }
 

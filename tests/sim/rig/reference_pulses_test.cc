@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/sim/at_ms.h"
+
 namespace simbench::sim {
 namespace {
 
-constexpr Nanoseconds kPeriod = std::chrono::milliseconds(30);
-
-TrueTime at_ms(double ms) { return TrueTime{} + from_ms(ms); }
+constexpr Nanoseconds kPulsePeriod = std::chrono::milliseconds(30);
 
 TEST(ReferencePulses, CountFromTheNearestSlot) {
-  ReferencePulses reference(at_ms(10), kPeriod);
+  ReferencePulses reference(at_ms(10), kPulsePeriod);
   EXPECT_EQ(reference.pulse_of(at_ms(10)), kNoPulse);
   reference.add(at_ms(104));  // slot 3 is due at 100 ms
   reference.add(at_ms(134));
@@ -19,7 +19,7 @@ TEST(ReferencePulses, CountFromTheNearestSlot) {
 }
 
 TEST(ReferencePulses, AnExposureBelongsToTheNearest) {
-  ReferencePulses reference(at_ms(0), kPeriod);
+  ReferencePulses reference(at_ms(0), kPulsePeriod);
   reference.add(at_ms(30));
   reference.add(at_ms(60));
   EXPECT_EQ(reference.pulse_of(at_ms(44)), 1);
@@ -31,7 +31,7 @@ TEST(ReferencePulses, AnExposureBelongsToTheNearest) {
 }
 
 TEST(ReferencePulses, ALongFrameLeavesSlotsOut) {
-  ReferencePulses reference(at_ms(0), kPeriod);
+  ReferencePulses reference(at_ms(0), kPulsePeriod);
   reference.add(at_ms(0));
   reference.add(at_ms(40));   // one period and a third
   reference.add(at_ms(120));  // two and two thirds later
