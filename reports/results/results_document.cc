@@ -9,6 +9,7 @@
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/program_gap.h"
+#include "reports/results/published_figures_block.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -323,13 +324,17 @@ Document results_document(const Results& results, const std::string& summary) {
   Document document{.title = results_title(results), .head = results_head(results, summary)};
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
-  blocks.push_back({.heading = "Metrics that need true time", .table = metrics_table(results, &TablePlaces::truth)});
+  blocks.push_back({.heading = "Metrics that need true time",
+                    .table = metrics_table(results, &TablePlaces::truth)});
   if (has_time_errors(results)) {
     blocks.push_back({.heading = "Time error of the hosts",
                       .table = metrics_table(results, &TablePlaces::time_errors)});
   }
   if (std::optional<Block> alignment = alignment_block(results)) {
     blocks.push_back(std::move(*alignment));
+  }
+  if (std::optional<Block> figures = published_figures_block(results)) {
+    blocks.push_back(std::move(*figures));
   }
   if (std::optional<Block> gap = program_gap_block(results)) blocks.push_back(std::move(*gap));
   if (gatherings_differ(results)) {
