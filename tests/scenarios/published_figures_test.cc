@@ -74,7 +74,7 @@ TEST(PublishedFigures, HaveConditionsAndASource) {
   EXPECT_THAT(error_of(figures(figure_of("yoon2021_both", ", \"below\": 1"))),
               HasSubstr("/published_figures/0/below: found an unknown key"));
   EXPECT_THAT(error_of("\"published_figures\": {}"),
-              HasSubstr("/published_figures: found {}, allowed an array of 0 to 1000"));
+              HasSubstr("/published_figures: found an object, allowed an array of 0 to 1000"));
 }
 
 // A base "base.json" with two figures, and a scenario over it.

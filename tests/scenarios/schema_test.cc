@@ -80,9 +80,12 @@ json full_document() {
        {{"idle_ms", 100}, {"beacon_interval_ms", 102.4}, {"dtim_period", 1}, {"wake_up_ms", 2}}}};
   document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
   // A figure has one of the three numbers, which only the checks say.
-  const json figure = {{"pipeline", "yoon2021_both"}, {"metric", "amd_ms"},
-                       {"at_most", 2},                {"value", 1},
-                       {"at_least", 0},               {"conditions", "a rig"},
+  const json figure = {{"pipeline", "yoon2021_both"},
+                       {"metric", "amd_ms"},
+                       {"at_most", 2},
+                       {"value", 1},
+                       {"at_least", 0},
+                       {"conditions", "a rig"},
                        {"source", "a paper"}};
   document["published_figures"] = json::array({figure});
   json& stream = document["cameras"]["streams"][0];
