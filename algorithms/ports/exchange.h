@@ -41,7 +41,7 @@ struct AlignmentReport {
   std::uint32_t camera = 0;
   bool aligned = false;
   std::uint32_t controls = 0;  // that were sent to it until now
-  std::string message;         // empty, or why it is not aligned and what would help
+  std::string message{};       // empty, or why it is not aligned and what would help
 };
 
 }  // namespace simbench

@@ -369,7 +369,8 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   setup.median = scenario.evaluation.rmdv_median;
   setup.genlock =
       scenario.cameras.sync_mode == scenarios::SyncMode::kGenlock && !choice.is_steered();
-  setup.is_steered = scenario.cameras.frame_control.has_value();
+  setup.is_steered = choice.is_steered() || scenario.cameras.frame_control.has_value();
+  setup.unsteady_start = from_ms(scenario.cameras.unstable_start_ms);
   setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
   setup.make_gatherer = [make = choice.gathering.make, parameters = choice.gathering_parameters](
                             const GatheringSetup& gathering) {

@@ -40,15 +40,15 @@ constexpr Metric judged_by(Metric metric, const Judged& judged) {
 }
 
 inline constexpr Metric kAlignmentMetricTable[] = {
-    judged_by(explained(alignment_metric(
-                            "exposure_spread_median_ms", "median exposure spread", "ms",
-                            {&MetricValues<double>::exposure_spread_median_ms,
-                             &MetricValues<Series>::exposure_spread_median_ms},
-                            1),
-                        "exposure spread\nmedian",
-                        "exposure spread: range of the true mid-exposures of all cameras that "
-                        "belong together, its median and 95 % quantile over the evaluated pulses."),
-              kJudgedMs),
+    judged_by(
+        explained(alignment_metric("exposure_spread_median_ms", "median exposure spread", "ms",
+                                   {&MetricValues<double>::exposure_spread_median_ms,
+                                    &MetricValues<Series>::exposure_spread_median_ms},
+                                   1),
+                  "exposure spread\nmedian",
+                  "exposure spread: range of the true mid-exposures of all cameras that "
+                  "belong together, its median and 95 % quantile over the evaluated pulses."),
+        kJudgedMs),
     judged_by(explained(alignment_metric("exposure_spread_p95_ms", "95 % exposure spread", "ms",
                                          {&MetricValues<double>::exposure_spread_p95_ms,
                                           &MetricValues<Series>::exposure_spread_p95_ms},
@@ -67,12 +67,11 @@ inline constexpr Metric kAlignmentMetricTable[] = {
             "aligned_0_1_ms_s", "time until aligned to 0.1 ms", "s",
             {&MetricValues<double>::aligned_0_1_ms_s, &MetricValues<Series>::aligned_0_1_ms_s}, 4),
         "aligned\nto 0.1 ms", ""),
-    explained(
-        alignment_metric(
-            "aligned_0_01_ms_s", "time until aligned to 0.01 ms", "s",
-            {&MetricValues<double>::aligned_0_01_ms_s, &MetricValues<Series>::aligned_0_01_ms_s},
-            5),
-        "aligned\nto 0.01 ms", ""),
+    explained(alignment_metric("aligned_0_01_ms_s", "time until aligned to 0.01 ms", "s",
+                               {&MetricValues<double>::aligned_0_01_ms_s,
+                                &MetricValues<Series>::aligned_0_01_ms_s},
+                               5),
+              "aligned\nto 0.01 ms", ""),
     judged_by(
         explained(
             alignment_metric(
@@ -80,8 +79,9 @@ inline constexpr Metric kAlignmentMetricTable[] = {
                 {&MetricValues<double>::disturbed_frames, &MetricValues<Series>::disturbed_frames},
                 6),
             "frames\ndisturbed",
-            "disturbed: frames a camera whose length or exposure differs by more than 1 % from the "
-            "camera's median, warm-up included (1 % of a frame is what nobody sees).",
+            "disturbed: frames a camera of the whole capture, but for the cameras' unsteady start, "
+            "whose length or exposure differs by more than 1 % from the camera's median (1 % of a "
+            "frame is what nobody sees).",
             true),
         kJudgedFrames),
     explained(alignment_metric("exposure_drift_ppm", "exposure drift", "ppm",

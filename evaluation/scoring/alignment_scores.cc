@@ -16,8 +16,8 @@ namespace {
 constexpr double kSecondsPerNs = 1e-9;
 constexpr double kUsPerNs = 1e-3;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr double kDisturbedFrom = 0.01;   // of a frame's length or exposure
-constexpr double kWrongLockFrom = 0.1;    // of the period
+constexpr double kDisturbedFrom = 0.01;  // of a frame's length or exposure
+constexpr double kWrongLockFrom = 0.1;   // of the period
 constexpr std::int32_t kCountsForNone = -1;
 
 // So that differences do not overflow.
@@ -36,8 +36,8 @@ void by_second(const Items& items, SecondOf second_of, Use use) {
   auto begin = items.begin();
   while (begin != items.end()) {
     const std::int64_t second = second_of(*begin);
-    const auto end = std::find_if(
-        begin, items.end(), [&](const auto& item) { return second_of(item) != second; });
+    const auto end = std::find_if(begin, items.end(),
+                                  [&](const auto& item) { return second_of(item) != second; });
     use(second, begin, end);
     begin = end;
   }
@@ -45,8 +45,9 @@ void by_second(const Items& items, SecondOf second_of, Use use) {
 
 }  // namespace
 
-AlignmentScores::AlignmentScores(const RigLayout& layout)
-    : period_ns_(1e9 / layout.frame_rate_hz),
+AlignmentScores::AlignmentScores(const RigLayout& layout, Nanoseconds unsteady_start)
+    : unsteady_start_ns_(unsteady_start.count()),
+      period_ns_(1e9 / layout.frame_rate_hz),
       first_pulse_(layout.first_pulse),
       end_pulse_(std::min<std::int64_t>(layout.first_pulse + layout.pulses,
                                         std::numeric_limits<std::int32_t>::max())),
@@ -62,12 +63,11 @@ void AlignmentScores::add(const FrameRecord& frame, const FrameTruth& truth) {
   constexpr Nanoseconds::rep kLongest = std::numeric_limits<std::uint32_t>::max();
   const Nanoseconds exposure = truth.exposure_end - truth.exposure_start;
   start_ns_ = std::min(start_ns_, bounded_ns(truth.exposure_start));
-  cameras_[frame.camera].push_back(
-      {.mid_ns = bounded_ns(truth.mid_exposure()),
-       .pulse = pulse_that_counts(truth.pulse),
-       .counter = frame.counter,
-       .exposure_ns = static_cast<std::uint32_t>(
-           std::clamp(exposure.count(), Nanoseconds::rep{0}, kLongest))});
+  cameras_[frame.camera].push_back({.mid_ns = bounded_ns(truth.mid_exposure()),
+                                    .pulse = pulse_that_counts(truth.pulse),
+                                    .counter = frame.counter,
+                                    .exposure_ns = static_cast<std::uint32_t>(std::clamp(
+                                        exposure.count(), Nanoseconds::rep{0}, kLongest))});
 }
 
 void AlignmentScores::add(const AlignmentReport& report) {
@@ -143,28 +143,27 @@ void AlignmentScores::add_aligned(const std::vector<Pulse>& complete,
   });
 }
 
-double AlignmentScores::disturbed_frames() const {
-  double disturbed = 0;
-  std::size_t cameras = 0;
-  for (const std::vector<Frame>& frames : cameras_) {
-    std::vector<double> lengths_ns(frames.size(), kNan);
-    std::vector<double> exposures_ns(frames.size());
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      exposures_ns[i] = static_cast<double>(frames[i].exposure_ns);
-      if (i + 1 < frames.size() && frames[i + 1].counter == frames[i].counter + 1) {
-        lengths_ns[i] = static_cast<double>(frames[i + 1].mid_ns - frames[i].mid_ns);
-      }
-    }
-    const double length_ns = median(lengths_ns);
-    const double exposure_ns = median(exposures_ns);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (is_unlike(lengths_ns[i], length_ns) || is_unlike(exposures_ns[i], exposure_ns)) {
-        ++disturbed;
-      }
-    }
-    cameras += frames.empty() ? 0 : 1;
+std::optional<std::int64_t> AlignmentScores::disturbed_frames(
+    const std::vector<Frame>& frames) const {
+  const auto steady = std::ranges::find_if(frames, [&](const Frame& frame) {
+    return frame.mid_ns - frames.front().mid_ns >= unsteady_start_ns_;
+  });
+  std::vector<double> lengths_ns;
+  std::vector<double> exposures_ns;
+  for (auto frame = steady; frame != frames.end(); ++frame) {
+    const auto next = frame + 1;
+    const bool is_followed = next != frames.end() && next->counter == frame->counter + 1;
+    lengths_ns.push_back(is_followed ? static_cast<double>(next->mid_ns - frame->mid_ns) : kNan);
+    exposures_ns.push_back(static_cast<double>(frame->exposure_ns));
   }
-  return cameras > 0 ? disturbed / static_cast<double>(cameras) : kNan;
+  if (lengths_ns.empty()) return std::nullopt;
+  const double length_ns = median(lengths_ns);
+  const double exposure_ns = median(exposures_ns);
+  std::int64_t disturbed = 0;
+  for (std::size_t i = 0; i < lengths_ns.size(); ++i) {
+    if (is_unlike(lengths_ns[i], length_ns) || is_unlike(exposures_ns[i], exposure_ns)) ++disturbed;
+  }
+  return disturbed;
 }
 
 std::vector<AlignmentScores::Distance> AlignmentScores::distances(
@@ -194,7 +193,7 @@ double AlignmentScores::drift_ppm(const std::vector<Distance>& distances, double
     std::vector<double> us;
     for (auto each = begin; each != end; ++each) {
       at_s.push_back(each->at_s);
-      us.push_back(each->us);
+      us.push_back(each->us - begin->us);  // so that what is constant has no slope
     }
     drifts_ppm.push_back(std::abs(fit_line(at_s, us).slope));
   });
@@ -222,7 +221,13 @@ void AlignmentScores::add_distances(MetricValues<double>& score) const {
 }
 
 void AlignmentScores::add_to(MetricValues<double>& score) const {
-  score.disturbed_frames = disturbed_frames();
+  std::vector<double> disturbed;
+  for (const std::vector<Frame>& frames : cameras_) {
+    if (const auto found = disturbed_frames(frames)) {
+      disturbed.push_back(static_cast<double>(*found));
+    }
+  }
+  score.disturbed_frames = mean_of_existing(disturbed);
   if (cameras_.size() < 2) return;
   const std::vector<Pulse> complete = complete_pulses();
   add_spreads(complete, score);

@@ -5,14 +5,16 @@
 // exposure of the reference camera, camera 0, that is nearest to it. A pulse counts if all cameras
 // have a frame of it; of several frames of a camera, its first.
 //
-//   spread         the range of the true mid-exposures of a pulse; median and 95 % quantile over the
+//   spread         the range of the true mid-exposures of a pulse; median and 95 % quantile over
+//   the
 //                  evaluated pulses
 //   aligned        the whole second since the capture's start (the first exposure's begin, warm-up
 //                  included) from which on the median spread of every second stays below 1, 0.1 and
 //                  0.01 ms, to the last evaluated pulse; NaN: it does not
-//   disturbed      frames of the whole capture whose length (from mid-exposure to that of the next
-//                  frame by the camera's counter) or whose exposure differs from the camera's median
-//                  by more than 1 %; the mean over the cameras
+//   disturbed      frames of the whole capture, but for the cameras' unsteady start, whose length
+//                  (from mid-exposure to that of the next frame by the camera's counter) or whose
+//                  exposure differs from the camera's median by more than 1 %; the mean over the
+//                  cameras
 //   drift          of a camera against the reference camera: the change of the distance of their
 //                  mid-exposures over a second, along the least-squares line through it; the median
 //                  over the whole seconds of evaluated pulses of its absolute value, of the camera
@@ -24,7 +26,7 @@
 // What compares cameras is NaN of a single one, and everything without frames. Memory: 24 bytes a
 // frame. Complexity: O(n log n) of n frames. Definitions: docs/design.md section 8.
 //
-//   AlignmentScores scores(layout);
+//   AlignmentScores scores(layout, /*unsteady_start=*/from_ms(5000));
 //   scores.add(frame, truth);              // each frame of the scored stream
 //   scores.add(AlignmentReport{.camera = 3, .aligned = true});
 //   scores.add_to(seed_score);
@@ -33,6 +35,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "evaluation/scoring/metrics.h"
@@ -42,7 +45,8 @@ namespace simbench::evaluation {
 
 class AlignmentScores {
  public:
-  explicit AlignmentScores(const RigLayout& layout);
+  // `unsteady_start`: so long after a camera's first exposure its frames jitter by themselves.
+  AlignmentScores(const RigLayout& layout, Nanoseconds unsteady_start);
 
   // A frame of a camera of the layout, in order of delivery.
   void add(const FrameRecord& frame, const FrameTruth& truth);
@@ -54,8 +58,8 @@ class AlignmentScores {
 
  private:
   struct Frame {
-    std::int64_t mid_ns = 0;     // true mid-exposure
-    std::int32_t pulse = -1;     // -1: none that counts
+    std::int64_t mid_ns = 0;  // true mid-exposure
+    std::int32_t pulse = -1;  // -1: none that counts
     std::uint32_t counter = 0;
     std::uint32_t exposure_ns = 0;
   };
@@ -85,11 +89,13 @@ class AlignmentScores {
   std::vector<Pulse> complete_pulses() const;
   std::vector<Distance> distances(std::size_t camera, const std::vector<Pulse>& reference) const;
   double drift_ppm(const std::vector<Distance>& distances, double seconds) const;
-  double disturbed_frames() const;
+  // Nothing of a camera without steady frames.
+  std::optional<std::int64_t> disturbed_frames(const std::vector<Frame>& frames) const;
   void add_spreads(const std::vector<Pulse>& complete, MetricValues<double>& score) const;
   void add_aligned(const std::vector<Pulse>& complete, MetricValues<double>& score) const;
   void add_distances(MetricValues<double>& score) const;
 
+  std::int64_t unsteady_start_ns_;
   double period_ns_;
   std::int64_t first_pulse_;
   std::int64_t end_pulse_;

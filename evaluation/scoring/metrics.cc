@@ -66,6 +66,7 @@ bool Metric::is_known(const Row& row) const {
 }
 
 double Metric::value(const Row& row) const {
+  if (is_time_until()) return median_time(series(row).values);
   if (is_series()) return series(row).median;
   if (!is_count()) return number(row);
   return is_known(row) ? static_cast<double>(count(row)) : kNan;

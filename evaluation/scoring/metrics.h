@@ -208,6 +208,8 @@ struct Metric {
   }
   bool higher_is_better() const { return better == Better::kHigher; }
   bool is_share() const { return std::string_view(unit) == "share"; }
+  // How long until something is so; NaN: it never was.
+  bool is_time_until() const { return std::string_view(unit) == "s"; }
   const char* member() const { return json_name != nullptr ? json_name : id; }  // in JSON
 
   // Whether a value can be the metric's: a share is from 0 to 1, what is judged is not below 0. NaN
@@ -227,7 +229,8 @@ struct Metric {
 
   // Whether the row knows the value. An unknown series or number is NaN; a count cannot be.
   bool is_known(const Row& row) const;
-  // The value over all seeds: median, number or count; NaN if the row does not know it.
+  // The value over all seeds: median (of a time until: median_time()), number or count; NaN if the
+  // row does not know it.
   double value(const Row& row) const;
 
   // Reduces a series for comparisons and gates: to its median, a share to the mean of the values
@@ -243,8 +246,8 @@ const Metric& metric(std::string_view id, ResultKind kind = ResultKind::kCapture
 
 // The metrics with `judged`, in order: those of comparisons and gates.
 std::vector<const Metric*> judged_metrics(ResultKind kind = ResultKind::kCaptures);
-// Those that the rows are judged by: without metrics that archives may lack (is_new) and of which no
-// row has a value.
+// Those that the rows are judged by: without metrics that archives may lack (is_new) and of which
+// no row has a value.
 std::vector<const Metric*> judged_metrics(ResultKind kind, std::span<const Row* const> rows);
 // The columns of a sweep, in their order: series and numbers, then counts.
 std::vector<const Metric*> sweep_metrics(ResultKind kind = ResultKind::kCaptures);

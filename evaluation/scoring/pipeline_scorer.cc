@@ -44,7 +44,7 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   table_.emplace(layout.first_pulse, layout.pulses, cameras);
   sets_.emplace(*table_, observer_);
   host_errors_.emplace(layout.hosts);
-  if (setup_.is_steered) alignment_.emplace(layout);
+  if (setup_.is_steered) alignment_.emplace(layout, setup_.unsteady_start);
   sources_.assign(cameras, {{}, GenlockOrder(period(), GenlockOrder::Variant::kReanchored)});
   for (std::uint32_t camera = 0; camera < cameras; ++camera) {
     const std::uint32_t host = layout.cameras[camera].host;

@@ -60,6 +60,7 @@ struct ScorerSetup {
   GathererFactory make_gatherer;
   bool gatherer_needs_pulses = false;  // the oracle of gathering
   bool is_steered = false;             // there may be controls of frames: alignment is scored
+  Nanoseconds unsteady_start{};        // of it: so long, cameras' exposures jitter by themselves
 };
 
 class PipelineScorer final : public RecordingSink {
@@ -141,8 +142,8 @@ class PipelineScorer final : public RecordingSink {
   std::optional<SetCounter> sets_;
   std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
   std::optional<HostErrors> host_errors_;
-  std::optional<AlignmentScores> alignment_;    // with is_steered
-  std::optional<KeptFrames> kept_;  // for offline estimators
+  std::optional<AlignmentScores> alignment_;  // with is_steered
+  std::optional<KeptFrames> kept_;            // for offline estimators
   std::int64_t genlock_index_errors_ = 0;
   std::vector<SyncOutcome> failures_;
 };

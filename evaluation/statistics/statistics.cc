@@ -78,6 +78,17 @@ double quantile(std::vector<double> values, double p) {
   return quantile_of_sorted(values, p);
 }
 
+double median_time(std::vector<double> values) {
+  for (double& value : values) {
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+  }
+  std::sort(values.begin(), values.end());
+  if (values.empty()) return kNan;
+  const double high = values[values.size() / 2];
+  const double median = (values[(values.size() - 1) / 2] + high) / 2;
+  return std::isfinite(median) ? median : kNan;
+}
+
 double mean_of_existing(const std::vector<double>& values) {
   double sum = 0;
   double count = 0;

@@ -40,6 +40,9 @@ double quantile(std::vector<double> values, double p);
 double quantile_of_sorted(const std::vector<double>& sorted, double p);
 
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+// The median of times until something is so, where NaN (never) is later than all others; NaN: half
+// of them or more are.
+double median_time(std::vector<double> values);
 
 double mean_of_existing(const std::vector<double>& values);
 std::size_t count_of_existing(std::span<const double> values);

@@ -39,7 +39,7 @@ std::string in_sync_sentence(const Row& row) {
   } bounds[] = {
       {row.below_0_01_ms_s, "10 us"}, {row.below_0_1_ms_s, "0.1 ms"}, {row.below_1_ms_s, "1 ms"}};
   for (const auto& [seconds, bound] : bounds) {
-    const double median_s = median_time(seconds.values);
+    const double median_s = evaluation::median_time(seconds.values);
     if (std::isnan(median_s)) continue;
     return fmt::format(
         "In sync: within {} for good {} after the cold start; the largest error of a host is {}.",
@@ -67,7 +67,7 @@ std::string kind_of_error_sentence(const Row& row) {
 
 std::string without_master_sentence(const Row& row) {
   if (std::isnan(row.holdover_600_ms.median)) return "";
-  const double recovery_s = median_time(row.recovery_s.values);
+  const double recovery_s = evaluation::median_time(row.recovery_s.values);
   return fmt::format("Without its master a host is {} off after 60 s, {} after 600 s; {}.",
                      time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
                      std::isnan(recovery_s)

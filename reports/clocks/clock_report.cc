@@ -51,16 +51,9 @@ double rms(const std::vector<double>& values) {
   return found.empty() ? kNan : std::sqrt(squares / static_cast<double>(found.size()));
 }
 
-// Over the seeds.
-double median_of(const Metric& metric, const Row& row) {
-  const evaluation::Series& series = metric.series(row);
-  return std::string_view(metric.unit) == "s" ? median_time(series.values) : series.median;
-}
-
 Field<Row> clock_field(const Metric& metric) {
-  Field<Row> field = {{metric.heading, Align::kRight, metric.legend}, [metric](const Row& row) {
-                        return metric_text(metric, median_of(metric, row));
-                      }};
+  Field<Row> field = {{metric.heading, Align::kRight, metric.legend},
+                      [metric](const Row& row) { return metric_text(metric, metric.value(row)); }};
   if (metric.band_heading != nullptr) {
     field.sparkline = [metric](const Row& row) { return seeds_sparkline(metric.series(row)); };
   }
@@ -117,17 +110,6 @@ std::vector<std::string> legend(const ClockResults& results) {
 }
 
 }  // namespace
-
-double median_time(std::vector<double> values) {
-  for (double& value : values) {
-    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
-  }
-  std::sort(values.begin(), values.end());
-  if (values.empty()) return kNan;
-  const double high = values[values.size() / 2];
-  const double median = (values[(values.size() - 1) / 2] + high) / 2;
-  return std::isfinite(median) ? median : kNan;
-}
 
 ClockResults clock_results_of(const Archive& archive) {
   return {.results = archive.results, .curves = archive.curves};
@@ -188,11 +170,11 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
   all["rms_te_ms"] = rms(row.rms_te_ms.values);
   all["constant_te_ms"] = largest(row.constant_te_ms.values);
   all["dynamic_te_ms"] = largest(row.dynamic_te_ms.values);
-  all["below_ms"] = {{"1", median_time(row.below_1_ms_s.values)},
-                     {"0.1", median_time(row.below_0_1_ms_s.values)},
-                     {"0.01", median_time(row.below_0_01_ms_s.values)}};
+  all["below_ms"] = {{"1", evaluation::median_time(row.below_1_ms_s.values)},
+                     {"0.1", evaluation::median_time(row.below_0_1_ms_s.values)},
+                     {"0.01", evaluation::median_time(row.below_0_01_ms_s.values)}};
   all["holdover_ms"] = {{"60", row.holdover_60_ms.median}, {"600", row.holdover_600_ms.median}};
-  all["recovery_s"] = median_time(row.recovery_s.values);
+  all["recovery_s"] = evaluation::median_time(row.recovery_s.values);
   all["packets_per_s"] = row.packets_per_s.median;
   for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
     all["metrics"][metric.id] = series_json(metric.series(row));
@@ -232,8 +214,7 @@ std::string clock_csv(const ClockResults& results) {
     const Row& row = results.results.rows[i];
     const std::string name = csv_cell(row.pipeline);
     for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
-      text +=
-          fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(median_of(metric, row)), changes);
+      text += fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(metric.value(row)), changes);
     }
     for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
       for (const evaluation::StabilityPoint& point : results.curves[i].*curve.points) {

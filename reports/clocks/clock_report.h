@@ -40,10 +40,6 @@ namespace simbench::reports {
 // What an archive holds: without the readings.
 evaluation::ClockResults clock_results_of(const Archive& archive);
 
-// The median of times, where a seed without a value is later than all others; NaN: half of them or
-// more have none.
-double median_time(std::vector<double> values);
-
 // Its head begins with the answer (clock_answer.h).
 Document clock_document(const evaluation::ClockResults& results, const std::string& summary);
 

@@ -44,8 +44,7 @@ Json margins_json(const Baseline& baseline) {
   Json all;
   for (std::size_t i = 0; i < baseline.margins.size(); ++i) {
     const evaluation::GateMargin& margin = baseline.margins[i];
-    all[baseline.judged[i]->id] = {{"relative", margin.relative},
-                                                 {"absolute", margin.absolute}};
+    all[baseline.judged[i]->id] = {{"relative", margin.relative}, {"absolute", margin.absolute}};
   }
   return all;
 }

@@ -324,8 +324,9 @@ std::string comparison_csv(const Comparison& comparison) {
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
       const evaluation::PairedComparison& c = pipeline.metrics[i];
-      text += fmt::format("{},{},{},{},{}", csv_cell(pipeline.pipeline_a),
-                          csv_cell(pipeline.pipeline_b), comparison.judged[i]->id, c.pairs, c.left_out);
+      text +=
+          fmt::format("{},{},{},{},{}", csv_cell(pipeline.pipeline_a),
+                      csv_cell(pipeline.pipeline_b), comparison.judged[i]->id, c.pairs, c.left_out);
       for (const double value :
            {c.mean_a, c.mean_b, c.median_a, c.median_b, c.difference.value, c.difference.low,
             c.difference.high, c.ratio.value, c.ratio.low, c.ratio.high}) {

@@ -145,7 +145,8 @@ Table comparison_table(const Comparison& comparison) {
                                  ? pipeline.pipeline_b
                                  : fmt::format("{} / {}", pipeline.pipeline_b, pipeline.pipeline_a);
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      table.add(cells(name, *comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
+      table.add(
+          cells(name, *comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
   }
   return table;
@@ -166,7 +167,8 @@ Block words(const Comparison& comparison) {
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     std::vector<std::string> effects;
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      effects.push_back(effect_words(*comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
+      effects.push_back(
+          effect_words(*comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
     block.items.push_back(fmt::format("{} against {}: {}", pipeline.pipeline_b, pipeline.pipeline_a,
                                       fmt::join(effects, "; ")));

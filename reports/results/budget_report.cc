@@ -86,7 +86,7 @@ std::string budget_legend(const Budget& budget) {
           : "In some of the worlds gathering finds no set, so errors are over the true pulses and "
             "gathering has no part in them.";
   return over +
-         " A stage's part is its Shapley value over all 128 worlds with some stages ideal. Parts "
+         " A stage's part is its Shapley value over all worlds with some stages ideal. Parts "
          "and remainder add up to the total; a part below zero cancels others. Physical: how far "
          "apart the exposures of a pulse really were, which no clock can remove.";
 }

@@ -44,7 +44,8 @@ Field<Row> published_field(Column column, std::string (*cell)(const PublishedCom
 ScoredSeeds scored_seeds_of(const Row& row, const std::vector<const Metric*>& metrics) {
   ScoredSeeds found{.all = row.amd_ms.values.size()};
   for (const Metric* metric : metrics) {
-    if (metric->is_series()) found.add(evaluation::scored_seeds(row, *metric));
+    if (metric->is_series() && !metric->is_time_until())
+      found.add(evaluation::scored_seeds(row, *metric));
   }
   if (found.most == 0) found.add(evaluation::scored_seeds(row));
   return found;
@@ -104,7 +105,7 @@ Table paper_table(const Results& results) {
 }
 
 // A line per pipeline with the metrics that name the table.
-Table metrics_table(const Results& results, int TablePlaces::*table) {
+Table table_of_metrics(const Results& results, int TablePlaces::*table) {
   const auto metrics = evaluation::table_metrics(table);
   RowFields fields = {pipeline_field<Row>()};
   append(fields, scored_seeds_field(pointers_to(results.rows), metrics));
@@ -277,7 +278,7 @@ RowFields scored_seeds_field(const std::vector<const Row*>& rows,
 std::optional<Block> alignment_block(const Results& results) {
   if (!has_alignment(results)) return std::nullopt;
   return Block{.heading = "Alignment of the exposures",
-               .table = metrics_table(results, &TablePlaces::alignment)};
+               .table = table_of_metrics(results, &TablePlaces::alignment)};
 }
 
 std::vector<std::string> alignment_legend() {
@@ -325,10 +326,10 @@ Document results_document(const Results& results, const std::string& summary) {
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
   blocks.push_back({.heading = "Metrics that need true time",
-                    .table = metrics_table(results, &TablePlaces::truth)});
+                    .table = table_of_metrics(results, &TablePlaces::truth)});
   if (has_time_errors(results)) {
     blocks.push_back({.heading = "Time error of the hosts",
-                      .table = metrics_table(results, &TablePlaces::time_errors)});
+                      .table = table_of_metrics(results, &TablePlaces::time_errors)});
   }
   if (std::optional<Block> alignment = alignment_block(results)) {
     blocks.push_back(std::move(*alignment));

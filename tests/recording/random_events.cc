@@ -16,7 +16,7 @@ using Random = std::mt19937_64;
 template <class Number>
 Number any_number(Random& random) {
   using Limits = std::numeric_limits<Number>;
-  switch (random() % 7) {
+  switch (random() % 6) {
     case 0:
       return Limits::min();
     case 1:
@@ -149,7 +149,7 @@ struct Same {
 
 RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
   const auto host = [&] { return any_number<std::uint32_t>(random) % bounds.hosts; };
-  switch (random() % 6) {
+  switch (random() % 7) {
     case 0: {
       PulseEvent event;
       event.pulse = any_number<std::int64_t>(random);

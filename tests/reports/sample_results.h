@@ -30,6 +30,26 @@ inline evaluation::SeedScore seed_score(std::uint64_t seed) {
   return score;
 }
 
+// Of a capture whose exposures nobody steers.
+inline void set_unsteered(evaluation::Row& row) {
+  row.exposure_spread_median_ms = row.exposure_spread_p95_ms = no_series();
+  row.aligned_1_ms_s = row.aligned_0_1_ms_s = row.aligned_0_01_ms_s = no_series();
+  row.disturbed_frames = row.exposure_drift_ppm = row.wrong_locks = no_series();
+}
+
+// What a row of steered exposures has beside the others.
+inline void set_steered(evaluation::Row& row) {
+  row.capture_alignment = "nudge";
+  row.exposure_spread_median_ms = series(0.25, 0.75);
+  row.exposure_spread_p95_ms = series(1, 3);
+  row.aligned_1_ms_s = series(2, 4);
+  row.aligned_0_1_ms_s = series(6, 10);
+  row.aligned_0_01_ms_s = no_series();
+  row.disturbed_frames = series(10, 15);
+  row.exposure_drift_ppm = series(4, 6);
+  row.wrong_locks = series(0, 1);
+}
+
 // A pipeline with a published value and everything there is.
 inline evaluation::Row full_row() {
   evaluation::Row both;
@@ -71,6 +91,7 @@ inline evaluation::Row full_row() {
                                                    .rmdv_attainable = false,
                                                    .amd_percentile = {50, 32.25, 67.75},
                                                    .rmdv_percentile = {100, 95.25, 100}};
+  set_unsteered(both);
   both.seeds = {seed_score(1), seed_score(2)};
   return both;
 }
@@ -98,6 +119,7 @@ inline evaluation::Row bare_row() {
   none.set_amd_ms = no_series();
   none.set_absolute_error_ms = no_series();
   none.emission_latency_ms = no_series();
+  set_unsteered(none);
   return none;
 }
 

@@ -40,6 +40,10 @@ TEST(Requirement, KnowsUnitsAndNames) {
   EXPECT_DOUBLE_EQ(parse_requirement("precision>0.9").limit, 0.9);
   EXPECT_DOUBLE_EQ(parse_requirement("packets<50").limit, 50);
   EXPECT_STREQ(parse_requirement("max_te<1ms").metric->id, "max_te_ms");
+  EXPECT_DOUBLE_EQ(parse_requirement("aligned_1_ms<30s").limit, 30);
+  EXPECT_DOUBLE_EQ(parse_requirement("aligned_1_ms<500ms").limit, 0.5);
+  EXPECT_DOUBLE_EQ(parse_requirement("exposure_drift<20ppm").limit, 20);
+  EXPECT_DOUBLE_EQ(parse_requirement("disturbed_frames<50").limit, 50);
 }
 
 TEST(Requirement, IsMetOnItsSideOfTheLimit) {
@@ -62,11 +66,14 @@ TEST(Requirement, HasAMargin) {
 }
 
 TEST(Requirement, RefusesWhatItDoesNotKnow) {
-  EXPECT_THAT(refusal("speed<1ms"), HasSubstr("--require: found 'speed', allowed a metric: amd, "));
+  EXPECT_THAT(refusal("speed<1ms"),
+              HasSubstr("--require: found 'speed', allowed a metric: aligned_0_01_ms, "));
   EXPECT_THAT(refusal("amd"), HasSubstr("found 'amd', allowed METRIC<VALUE"));
   EXPECT_THAT(refusal("amd<1kg"), HasSubstr("AMD with the unit s, ms, us or ns"));
   EXPECT_THAT(refusal("amd<1"), HasSubstr("AMD with the unit s, ms, us or ns"));
   EXPECT_THAT(refusal("recall>1ms"), HasSubstr("% or as a share"));
+  EXPECT_THAT(refusal("exposure_drift<20"), HasSubstr("exposure drift with the unit ppm"));
+  EXPECT_THAT(refusal("aligned_1_ms<30"), HasSubstr("with the unit s, ms, us or ns"));
   EXPECT_THAT(refusal("amd<ms"), HasSubstr("a number from 0"));
   EXPECT_THAT(refusal("amd<-1ms"), HasSubstr("a number from 0"));
   EXPECT_THAT(refusal("amd<1.2.3ms"), HasSubstr("a number from 0"));

@@ -30,17 +30,25 @@ struct SteeredCapture : TestCapture {
   SeedScore scored(const std::vector<AlignmentReport>& reports = {}) const {
     ScorerSetup setup = arrival_setup();
     setup.is_steered = true;
+    setup.unsteady_start = unsteady_start;
     PipelineScorer scorer(setup);
     record(scorer);
     for (const AlignmentReport& report : reports) scorer.on_alignment(report);
     return scorer.finish();
   }
+
+  Nanoseconds unsteady_start{};
 };
 
 std::vector<double> all_of(const SeedScore& score) {
-  return {score.exposure_spread_median_ms, score.exposure_spread_p95_ms, score.aligned_1_ms_s,
-          score.aligned_0_1_ms_s,          score.aligned_0_01_ms_s,      score.disturbed_frames,
-          score.exposure_drift_ppm,        score.wrong_locks};
+  return {score.exposure_spread_median_ms,
+          score.exposure_spread_p95_ms,
+          score.aligned_1_ms_s,
+          score.aligned_0_1_ms_s,
+          score.aligned_0_01_ms_s,
+          score.disturbed_frames,
+          score.exposure_drift_ppm,
+          score.wrong_locks};
 }
 
 // Camera 2 exposes that much later than the others.
@@ -53,9 +61,8 @@ TestCapture::PerFrame third_later(std::function<double(std::int64_t pulse)> ms) 
 TEST(AlignmentScores, MedianAndQuantileOfTheSpread) {
   SteeredCapture capture;
   // 0, 0.01, ... 3.99 ms at the 400 evaluated pulses; 9 ms before them does not count.
-  capture.exposed_late_by = third_later([](std::int64_t pulse) {
-    return pulse < 100 ? 9 : static_cast<double>(pulse - 100) / 100;
-  });
+  capture.exposed_late_by = third_later(
+      [](std::int64_t pulse) { return pulse < 100 ? 9 : static_cast<double>(pulse - 100) / 100; });
   const SeedScore score = capture.scored();
   EXPECT_NEAR(score.exposure_spread_median_ms, 1.995, kNanosecondsInMs);
   EXPECT_NEAR(score.exposure_spread_p95_ms, 0.95 * 3.99, kNanosecondsInMs);
@@ -78,9 +85,9 @@ TEST(AlignmentScores, PulsesThatACameraLacksHaveNoSpread) {
 TEST(AlignmentScores, AlignedFromTheSecondOnInWhichTheSpreadFalls) {
   SteeredCapture capture;
   capture.exposed_late_by = third_later([](std::int64_t pulse) {
-    if (pulse < 50) return 5.0;             // the first second
-    if (pulse < 4 * 50) return 0.5;         // until 4 s
-    return pulse < 7 * 50 ? 0.05 : 0.005;   // until 7 s, and later
+    if (pulse < 50) return 5.0;            // the first second
+    if (pulse < 4 * 50) return 0.5;        // until 4 s
+    return pulse < 7 * 50 ? 0.05 : 0.005;  // until 7 s, and later
   });
   const SeedScore score = capture.scored();
   EXPECT_DOUBLE_EQ(score.aligned_1_ms_s, 1) << "the warm-up counts";
@@ -132,6 +139,19 @@ TEST(AlignmentScores, JitterDisturbsNoFrame) {
   EXPECT_EQ(capture.scored().disturbed_frames, 0);
 }
 
+TEST(AlignmentScores, TheUnsteadyStartDoesNotCount) {
+  SteeredCapture capture;
+  // Until 1 s every second frame of camera 1 is 1 ms late.
+  capture.exposed_late_by = [](std::uint32_t camera, std::int64_t pulse) {
+    return from_ms(camera == 1 && pulse < 50 && pulse % 2 == 1 ? 1 : 0);
+  };
+  EXPECT_DOUBLE_EQ(capture.scored().disturbed_frames, 50.0 / 3);
+  capture.unsteady_start = from_ms(1000);
+  EXPECT_EQ(capture.scored().disturbed_frames, 0);
+  capture.unsteady_start = from_ms(980);
+  EXPECT_DOUBLE_EQ(capture.scored().disturbed_frames, 1.0 / 3);
+}
+
 TEST(AlignmentScores, ALostFrameDisturbsNone) {
   SteeredCapture capture;
   capture.lost = [](std::uint32_t camera, std::int64_t pulse) {
@@ -142,7 +162,7 @@ TEST(AlignmentScores, ALostFrameDisturbsNone) {
 
 TEST(AlignmentScores, AFrameOfAnotherExposureIsDisturbed) {
   SteeredCapture capture;
-  AlignmentScores scores(capture.layout);
+  AlignmentScores scores(capture.layout, Nanoseconds(0));
   for (std::uint32_t camera = 0; camera < 3; ++camera) {
     for (std::uint32_t counter = 0; counter < 100; ++counter) {
       FrameTruth truth;
@@ -219,7 +239,7 @@ TEST(AlignmentScores, TheNewestReportOfACameraCounts) {
 
 TEST(AlignmentScores, OfTwoFramesNearOnePulseTheFirstCounts) {
   SteeredCapture capture;
-  AlignmentScores scores(capture.layout);
+  AlignmentScores scores(capture.layout, Nanoseconds(0));
   const auto expose = [&scores](std::uint32_t camera, std::int64_t pulse, double late_ms) {
     FrameTruth truth;
     truth.pulse = pulse;

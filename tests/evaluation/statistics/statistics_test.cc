@@ -158,5 +158,14 @@ TEST(PlacementTest, NeedsSeeds) {
   EXPECT_EQ(placement_among(kFewestOutside, kFewestOutside), Placement::kOutside);
 }
 
+TEST(MedianTime, NeverIsLaterThanAllOthers) {
+  EXPECT_EQ(median_time({3, 1, 2}), 2);
+  EXPECT_EQ(median_time({1, 2, 3, 4}), 2.5);
+  EXPECT_EQ(median_time({1, kNan, 3}), 3);
+  EXPECT_TRUE(std::isnan(median_time({1, kNan})));
+  EXPECT_TRUE(std::isnan(median_time({kNan, 1, kNan})));
+  EXPECT_TRUE(std::isnan(median_time({})));
+}
+
 }  // namespace
 }  // namespace simbench::evaluation

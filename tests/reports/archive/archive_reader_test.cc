@@ -129,6 +129,17 @@ TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
   EXPECT_EQ(json(archive.results), json(written_));
 }
 
+TEST_F(ArchiveReader, WhatSteersTheExposuresIsRead) {
+  auto root = nlohmann::ordered_json::parse(content("results.json"));
+  root["rows"][1]["capture_alignment"] = "nudge";
+  root["rows"][1]["wrong_locks"]["values"] = {0, 2};
+  write("results.json", root.dump(2));
+  const Archive archive = read_archive(folder_.path().string());
+  EXPECT_EQ(archive.results.rows[0].capture_alignment, "");
+  EXPECT_EQ(archive.results.rows[1].capture_alignment, "nudge");
+  EXPECT_EQ(archive.results.rows[1].wrong_locks.values, (std::vector<double>{0, 2}));
+}
+
 // As of simbench 0.1: they are as of a row that does not know them, and can be written again.
 TEST_F(ArchiveReader, WithoutTheNewMetricsTheirValuesDoNotExist) {
   auto root = nlohmann::ordered_json::parse(content("results.json"));

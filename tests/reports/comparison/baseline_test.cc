@@ -68,6 +68,23 @@ TEST_F(BaselineFile, ALinePerMetricAndTwelveDigits) {
               HasSubstr("\n      \"amd_ms\": [0.666666666667],\n"));
 }
 
+TEST_F(BaselineFile, HasMetricsOfSteeredExposuresWhereAPipelineHasThem) {
+  Archive archive = sample_archive("a", 1, 2);
+  const Baseline unsteered = make_baseline(archive);
+  EXPECT_THAT(baseline_json(unsteered), testing::Not(HasSubstr("disturbed_frames")));
+  write_baseline(unsteered, path_);
+  EXPECT_EQ(read_baseline(path_).judged, unsteered.judged);
+  archive.results.rows[1].disturbed_frames = evaluation::make_series({3, 4});
+  archive.results.rows[0].disturbed_frames =
+      evaluation::make_series({evaluation::kNan, evaluation::kNan});
+  write_baseline(make_baseline(archive), path_);
+  const Baseline read = read_baseline(path_);
+  ASSERT_EQ(read.judged.size(), unsteered.judged.size() + 1);
+  EXPECT_STREQ(read.judged.back()->id, "disturbed_frames");
+  EXPECT_THAT(read.pipelines[1].values.back(), ElementsAre(3, 4));
+  EXPECT_EQ(read.margins.back().absolute, 0.5);
+}
+
 TEST_F(BaselineFile, MarginsMayBeEdited) {
   write_baseline(make_baseline(sample_archive("a")), path_);
   edit("\"relative\":0.02", "\"relative\":0.2");

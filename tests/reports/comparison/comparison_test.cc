@@ -52,6 +52,25 @@ TEST(CompareArchives, TheSameArchiveTwiceShowsNoDifference) {
   EXPECT_THAT(c.notes, IsEmpty());
 }
 
+TEST(CompareArchives, SteeredExposuresAreJudgedWhereThereAreSome) {
+  Archive a = sample_archive("a");
+  EXPECT_THAT(comparison_csv(compare_archives(a, a, {})), Not(HasSubstr("exposure_spread")));
+  Archive b = a;
+  for (Archive* archive : {&a, &b}) {
+    const std::size_t seeds = archive->results.seed_count;
+    const double spread_ms = archive == &a ? 2 : 1;
+    for (evaluation::Row& row : archive->results.rows) {
+      const bool is_first = row.pipeline == archive->results.rows.front().pipeline;
+      row.exposure_spread_median_ms = evaluation::make_series(
+          std::vector<double>(seeds, is_first ? spread_ms : evaluation::kNan));
+    }
+  }
+  const auto found = Json::parse(comparison_json(compare_archives(a, b, {})))["pipelines"];
+  EXPECT_EQ(found[0]["exposure_spread_median_ms"]["verdict"], "better");
+  EXPECT_EQ(found[1]["exposure_spread_median_ms"]["pairs"], 0);
+  EXPECT_FALSE(found[0].contains("exposure_spread_p95_ms")) << "no row has it";
+}
+
 TEST(CompareArchives, CommonSeedsAndPipelinesAreComparedAndTheRestIsSaid) {
   const Archive a = sample_archive("a", 1, 32);
   Archive b = sample_archive("b", 11, 32);

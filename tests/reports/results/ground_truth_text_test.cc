@@ -78,8 +78,7 @@ TEST(GroundTruthText, IndexErrorsOfUnverifiedSetsAreNotKnown) {
 
 TEST(GroundTruthText, CsvHasThreeMoreColumns) {
   const std::string text = csv(sample_rig_results());
-  EXPECT_THAT(text,
-              HasSubstr(",emission_latency_max_ms,scored_seeds,ground_truth,verified,notes\n"));
+  EXPECT_THAT(text, HasSubstr(",wrong_locks,scored_seeds,ground_truth,verified,notes\n"));
   EXPECT_THAT(text, HasSubstr(",none,unverified,repetition 2: camera 7 was unplugged\n"));
   EXPECT_THAT(text, HasSubstr("; repetition 2: host2 is \"\"lost\"\", too\"\n"));
   EXPECT_THAT(text, HasSubstr(",720,,4,,21,"));  // neither pure sets nor index errors

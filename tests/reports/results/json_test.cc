@@ -49,12 +49,30 @@ TEST(ResultsJson, ARowHasEverything) {
       "emission_latency_max_ms": 6.0},
     "frames": {"expected": 34560, "delivered": 34557, "dropped": 3},
     "evaluated_pulses": 960, "unsynchronised_hosts": 1,
+    "exposure_spread_median_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "exposure_spread_p95_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "aligned_1_ms_s": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "aligned_0_1_ms_s": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "aligned_0_01_ms_s": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "disturbed_frames": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "exposure_drift_ppm": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "wrong_locks": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "scored_seeds": 2, "ground_truth": "simulation", "verified": true, "notes": [],
     "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
                   "rmdv_attainable": false,
                   "amd_percentile": 50.0, "amd_percentile_interval": [32.25, 67.75],
                   "rmdv_percentile": 100.0, "rmdv_percentile_interval": [95.25, 100.0]}
   })"));
+}
+
+TEST(ResultsJson, SteeredExposuresSayWhatSteersThem) {
+  evaluation::Results results = sample_results();
+  set_steered(results.rows[0]);
+  const Json rows = Json::parse(json(results))["rows"];
+  EXPECT_EQ(rows[0]["capture_alignment"], "nudge");
+  EXPECT_EQ(rows[0]["disturbed_frames"],
+            Json::parse(R"({"median": 12.5, "p05": 10.0, "p95": 15.0, "values": [10.0, 15.0]})"));
+  EXPECT_FALSE(rows[1].contains("capture_alignment"));
 }
 
 TEST(ResultsJson, WhatDoesNotExistIsNull) {

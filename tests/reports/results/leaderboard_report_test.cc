@@ -11,6 +11,7 @@
 namespace simbench::reports {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -38,6 +39,19 @@ TEST(LeaderboardReport, SaysWhatABoardVariesAndTheRatios) {
   EXPECT_THAT(line, HasSubstr(" 2.00 "));  // to the oracle
   EXPECT_THAT(line, HasSubstr("0.500"));   // to the paper's
   EXPECT_THAT(text, Not(HasSubstr("Floor")));
+}
+
+TEST(LeaderboardReport, SteeredExposuresHaveAStageAndABlock) {
+  evaluation::Results results = boards();
+  EXPECT_THAT(plain(leaderboard_document(results, "")), Not(HasSubstr("Alignment of the")));
+  for (evaluation::Row& row : results.rows) set_steered(row);
+  EXPECT_THAT(plain(leaderboard_document(results, "")),
+              AllOf(HasSubstr("host: each host_sync + nudge + regression_30 + yoon2021"),
+                    HasSubstr("Alignment of the exposures"), HasSubstr("5.00 ppm"),
+                    HasSubstr("wrong locks: cameras reported as")));
+  results.rows.back().capture_alignment = "other";
+  EXPECT_THAT(plain(leaderboard_document(results, "")),
+              HasSubstr("each host_sync + each capture_alignment + regression_30"));
 }
 
 TEST(LeaderboardReport, CountsItsSeeds) {

@@ -217,6 +217,27 @@ TEST(ResultsDocument, ClaimsOfThePaperAreNotThoseOfAnotherWorld) {
       "each holds");
 }
 
+TEST(ResultsDocument, SteeredExposuresHaveABlock) {
+  evaluation::Results results = sample_results();
+  const std::string unsteered = plain(results_document(results, ""));
+  EXPECT_THAT(unsteered, Not(HasSubstr("Alignment of the exposures")));
+  EXPECT_THAT(unsteered, Not(HasSubstr("wrong locks")));
+  set_steered(results.rows[0]);
+  const std::string text = markdown(results_document(results, ""));
+  EXPECT_THAT(text, HasSubstr("### Alignment of the exposures"));
+  EXPECT_THAT(text, HasSubstr("| yoon2021_both | 0.500 ms | 2.00 ms | 3.00 s | 8.00 s | - | 12.5 | "
+                              "5.00 ppm | 0.500 |"));
+  results.rows[0].aligned_0_1_ms_s = {.values = {6, kNaN}, .median = 6, .p05 = 6, .p95 = 6};
+  EXPECT_THAT(markdown(results_document(results, "")), HasSubstr("| 2.00 ms | 3.00 s | - | - |"))
+      << "half of the seeds never were";
+  EXPECT_THAT(text, HasSubstr("wrong locks: cameras reported as aligned"));
+  EXPECT_THAT(text,
+              HasSubstr("Pipelines = host_sync [+ capture_alignment] + device_time + gathering"));
+  EXPECT_THAT(text,
+              HasSubstr("yoon2021_both = yoon2021_both + nudge + regression_30 + yoon2021\n"));
+  EXPECT_THAT(text, HasSubstr("free_running = free_running + raw_arrival + yoon2021\n"));
+}
+
 TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {
   evaluation::Results results = sample_results();
   results.rows[0].published.reset();

@@ -22,6 +22,8 @@ TEST(MetricText, ADurationHasTheUnitThatFits) {
 TEST(MetricText, OthersHaveTheirOwnForm) {
   EXPECT_EQ(metric_text(metric("recall"), 0.873), "87.3 %");
   EXPECT_EQ(metric_text(metric("packets_per_s"), 14.71), "14.7");
+  EXPECT_EQ(metric_text(metric("exposure_drift_ppm"), 20.04), "20.0 ppm");
+  EXPECT_EQ(metric_text(metric("disturbed_frames"), 12.5), "12.5");
 }
 
 TEST(MetricText, OfADifferenceAndItsInterval) {
@@ -30,10 +32,12 @@ TEST(MetricText, OfADifferenceAndItsInterval) {
   EXPECT_EQ(interval_text(metric("amd_ms"), 0.35, 1.2), "[0.350, 1.20] ms");
   EXPECT_EQ(interval_text(metric("recall"), -0.02, 0), "[-2.00, 0] %");
   EXPECT_EQ(interval_text(metric("packets_per_s"), 1, 2), "[1.00, 2.00]");
+  EXPECT_EQ(difference_text(metric("exposure_drift_ppm"), -0.5), "-0.500 ppm");
+  EXPECT_EQ(interval_text(metric("exposure_drift_ppm"), 1, 2), "[1.00, 2.00] ppm");
 }
 
 TEST(MetricText, WhatDoesNotExistIsADash) {
-  for (const char* id : {"amd_ms", "recall", "packets_per_s"}) {
+  for (const char* id : {"amd_ms", "recall", "packets_per_s", "exposure_drift_ppm"}) {
     EXPECT_EQ(metric_text(metric(id), kNone), "-");
     EXPECT_EQ(difference_text(metric(id), kNone), "-");
     EXPECT_EQ(interval_text(metric(id), 0, kNone), "-");
