@@ -125,7 +125,7 @@ TEST_F(InheritedFigures, AreReplacedByTheScenariosOwn) {
 
 TEST(PublishedFigures, OfABuiltinGoWithItsWorld) {
   EXPECT_EQ(load_scenario("5phone_wifi_30fps").published_figures.size(), 1U);
-  const Scenario changed = load_scenario("5phone_wifi_30fps", {{"/timeline/frames", "300"}});
+  const Scenario changed = load_scenario("5phone_wifi_30fps", {{"/timeline/frames", "7"}});
   EXPECT_THAT(changed.published_figures, IsEmpty());
   EXPECT_EQ(changed.derivation.unpublished, "5phone_wifi_30fps");
   const Scenario again = load_scenario_text(changed.resolved_json(), "manifest.json");
