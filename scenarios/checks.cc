@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,6 +15,7 @@
 #include "scenarios/fields.h"
 #include "scenarios/frame_control_checks.h"
 #include "scenarios/loader.h"
+#include "scenarios/published_checks.h"
 #include "scenarios/schema.h"
 #include "scenarios/wifi_checks.h"
 
@@ -349,21 +349,6 @@ void check_faults(const Scenario& scenario, const nlohmann::json& document) {
   }
 }
 
-template <class Result>
-void check_published(const Scenario& scenario, const std::string& pointer,
-                     const std::map<std::string, Result>& published,
-                     const std::vector<std::string>& pipelines) {
-  for (const auto& [name, result] : published) {
-    if (std::find(pipelines.begin(), pipelines.end(), name) != pipelines.end()) continue;
-    const std::vector<std::string> similar = nearest(name, pipelines);
-    fail_at(
-        scenario, child_pointer(pointer, name),
-        similar.empty()
-            ? fmt::format("found no such pipeline, allowed {}", fmt::join(pipelines, ", "))
-            : fmt::format("found no such pipeline, did you mean {}?", fmt::join(similar, " or ")));
-  }
-}
-
 // A plain name in a host's folder, and a variable that leaves the loader alone.
 void check_programs(const Scenario& scenario, const std::string& pointer,
                     const HostPrograms& programs) {
@@ -401,10 +386,7 @@ void check_pipelines(const Scenario& scenario) {
       check_programs(scenario, fmt::format("/pipelines/{}/host_sync/program", i), *programs);
     }
   }
-  check_published(scenario, "/published", scenario.published, names);
-  if (scenario.studio) {
-    check_published(scenario, "/studio/published", scenario.studio->published, names);
-  }
+  check_published(scenario);
 }
 
 // Slaves accept pulses in a window that Intel's page on external synchronisation calls "so strict"

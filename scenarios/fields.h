@@ -249,6 +249,8 @@ inline void from_json(const nlohmann::json& in, Pipeline& pipeline) {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
                                    rmdv_median)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Published, amd_ms, rmdv_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PublishedFigure, pipeline, metric, at_most, value,
+                                                at_least, conditions, source)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StudioSubject, kind, mesh_file, height_m, motion,
                                    walk_speed_m_per_s, turn_rate_rad_per_s, arm_rate_rad_per_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedReprojection, mean_cm, std_cm)
@@ -261,7 +263,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Studio, radius_m, azimuth_step_deg, heights_m
                                    published)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Scenario, name, summary, timeline, hosts, network,
                                                 trigger, cameras, usb, faults, evaluation,
-                                                algorithms, pipelines, published, studio)
+                                                algorithms, pipelines, published, published_figures,
+                                                studio)
 
 }  // namespace simbench::scenarios
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -319,6 +320,8 @@ struct Resolved {
   }
 };
 
+constexpr const char* kFigures = "published_figures";
+
 // Whether a published result holds: in the world in which it is stated, of a pipeline with the
 // stages that it has there. Notes in the derivation that one does not for the sake of its world.
 bool holds(const std::string& name, const std::string& pointer, Resolved& resolved) {
@@ -349,9 +352,38 @@ void drop_outlived_results(const std::string& published, Resolved& resolved) {
   resolved.document[at] = std::move(kept);
 }
 
+// The same of figures. Those that are kept move up, and so do their places.
+void drop_outlived_figures(Resolved& resolved) {
+  const auto found = resolved.document.find(kFigures);
+  if (found == resolved.document.end()) return;
+  const std::string list = fmt::format("/{}", kFigures);
+  json kept = json::array();
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    const json& figure = found->at(i);
+    const std::string pointer = fmt::format("{}/{}", list, i);
+    if (!holds(figure.value("pipeline", ""), pointer, resolved)) continue;
+    kept.push_back(figure);
+    places.push_back(resolved.places->nearest(pointer));
+  }
+  if (kept.size() == found->size()) return;
+  const Place whole = resolved.places->nearest(list);
+  resolved.places->erase(list);
+  if (kept.empty()) {
+    resolved.document.erase(kFigures);
+    return;
+  }
+  *found = std::move(kept);
+  resolved.places->set(list, whole);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    resolved.places->set(fmt::format("{}/{}", list, i), std::move(places[i]));
+  }
+}
+
 void drop_outlived_results(Resolved& resolved) {
   drop_outlived_results("/published", resolved);
   drop_outlived_results("/studio/published", resolved);
+  drop_outlived_figures(resolved);
 }
 
 void derive(Resolved& resolved);
@@ -392,6 +424,14 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
   return resolved;
 }
 
+// The pipelines with published figures.
+std::set<std::string> pipelines_of_figures(const json& scenario) {
+  std::set<std::string> names;
+  if (!scenario.contains(kFigures)) return names;
+  for (const json& figure : scenario[kFigures]) names.insert(figure.value("pipeline", ""));
+  return names;
+}
+
 // Whether `base` has a published result of a pipeline of the scenario, which itself has none.
 bool lacks_results_of(const json& base, const json& scenario) {
   for (const char* const published : {"/published", "/studio/published"}) {
@@ -401,7 +441,10 @@ bool lacks_results_of(const json& base, const json& scenario) {
       if (!scenario[at].contains(name) && find_pipeline(scenario, name) != nullptr) return true;
     }
   }
-  return false;
+  const std::set<std::string> stated = pipelines_of_figures(scenario);
+  return std::ranges::any_of(pipelines_of_figures(base), [&](const std::string& name) {
+    return !stated.contains(name) && find_pipeline(scenario, name) != nullptr;
+  });
 }
 
 // The built-in scenarios as they resolve, for those that state a built-in scenario's name alone.

@@ -30,6 +30,7 @@
 #include "scenarios/choices.h"
 #include "scenarios/derivation.h"
 #include "scenarios/lazy.h"
+#include "scenarios/published_figure.h"
 
 namespace simbench::scenarios {
 
@@ -549,9 +550,10 @@ struct Scenario {
   AlgorithmParameters algorithms;
   std::vector<Pipeline> pipelines;
   std::map<std::string, Published> published;  // by pipeline name
-  std::optional<Studio> studio;                // only of scenarios that have one
-  Derivation derivation;                       // from a built-in scenario
-  Lazy<std::string> resolved_json;             // fully resolved, pretty-printed
+  std::vector<PublishedFigure> published_figures;
+  std::optional<Studio> studio;     // only of scenarios that have one
+  Derivation derivation;            // from a built-in scenario
+  Lazy<std::string> resolved_json;  // fully resolved, pretty-printed
   std::shared_ptr<const Origin> origin;
 
   // The host that camera j is plugged into.

@@ -119,6 +119,7 @@ class Evaluation {
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
       results.rows.push_back(row(pipeline));
     }
+    results.published_figures = compare_figures(scenario_.published_figures, results.rows);
     for (const std::vector<std::size_t>& group : groups_) {
       add_cost(results.rows[group.front()], results.performance);
     }

@@ -12,6 +12,7 @@
 
 #include "algorithms/parameters.h"
 #include "evaluation/scoring/claims.h"
+#include "evaluation/scoring/metrics.h"
 #include "scenarios/calibration.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
@@ -286,6 +287,42 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   return choice;
 }
 
+// The ids of the metrics that each seed has a value of.
+std::vector<std::string> known_series() {
+  std::vector<std::string> known;
+  for (const Metric& each : metrics()) {
+    if (each.is_series()) known.emplace_back(each.id);
+  }
+  return known;
+}
+
+void check_figure(const Scenario& scenario, const std::string& pointer,
+                  const scenarios::PublishedFigure& figure) {
+  const auto found = std::ranges::find_if(
+      metrics(), [&figure](const Metric& each) { return each.id == figure.metric; });
+  if (found == metrics().end()) {
+    scenarios::fail_at(scenario, pointer + "/metric",
+                       unknown(scenarios::shown_text(figure.metric), known_series()));
+  }
+  if (!found->is_series()) {
+    scenarios::fail_at(scenario, pointer + "/metric",
+                       fmt::format("found \"{}\", which has no value of each seed, allowed: {}",
+                                   figure.metric, fmt::join(known_series(), ", ")));
+  }
+  if (found->can_be(figure.number())) return;
+  scenarios::fail_at(
+      scenario, fmt::format("{}/{}", pointer, figure.number_name()),
+      fmt::format("found {}, allowed {} ({})", figure.number(),
+                  found->is_share() ? "a share from 0 to 1" : "a number from 0", figure.metric));
+}
+
+// Only here are the metrics known.
+void check_published_figures(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.published_figures.size(); ++i) {
+    check_figure(scenario, fmt::format("/published_figures/{}", i), scenario.published_figures[i]);
+  }
+}
+
 }  // namespace
 
 void set_program_maker(ProgramMaker maker) { program_maker() = std::move(maker); }
@@ -293,6 +330,7 @@ void set_program_maker(ProgramMaker maker) { program_maker() = std::move(maker);
 std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
                                              const std::vector<std::string>& names) {
   check_all_parameters(scenario);
+  check_published_figures(scenario);
   std::vector<PipelineChoice> all;
   std::vector<std::string> known;
   const scenarios::Lazy<CalibratedDelays> delays(

@@ -74,7 +74,8 @@ void set_program_maker(ProgramMaker maker);
 
 // Returns the named pipelines in the given order; all of the scenario if `names` is empty. Throws
 // scenarios::InputError for an unknown pipeline or algorithm (naming the known ones), a pipeline
-// named twice, or a parameter that is not declared or not allowed.
+// named twice, a parameter that is not declared or not allowed, or a published figure of a metric
+// that there is not, that is no series or cannot have that value.
 std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario,
                                              const std::vector<std::string>& names);
 

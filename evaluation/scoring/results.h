@@ -15,6 +15,7 @@
 
 #include "evaluation/scoring/asymmetry_floor.h"
 #include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/published_figures.h"
 #include "recording/recording.h"
 #include "scenarios/derivation.h"
 
@@ -120,6 +121,7 @@ struct Results {
   std::uint64_t first_seed = 1;
   std::uint64_t seed_count = 0;
   std::vector<Row> rows;
+  std::vector<FigureComparison> published_figures{};
   std::vector<Claim> claims;
   std::optional<AsymmetryFloor> asymmetry_floor;  // if the scenario's links are asymmetric
   std::vector<std::string> warnings;

@@ -170,6 +170,21 @@ Percentile percentile_of(double published, const std::vector<double>& values) {
   return {100 * share, 100 * low, 100 * high};
 }
 
+Percentile percent_at_most(double bound, const std::vector<double>& values) {
+  const auto count = static_cast<std::int64_t>(count_of_existing(values));
+  if (count == 0) return {kNan, kNan, kNan};
+  const std::int64_t within =
+      std::ranges::count_if(values, [bound](double value) { return value <= bound; });
+  const auto [low, high] = binomial_interval(within, count);
+  return {100 * static_cast<double>(within) / static_cast<double>(count), 100 * low, 100 * high};
+}
+
+Percentile percent_at_least(double bound, const std::vector<double>& values) {
+  std::vector<double> mirrored = values;
+  for (double& value : mirrored) value = -value;
+  return percent_at_most(-bound, mirrored);
+}
+
 Placement placement_of(const Percentile& percentile) {
   constexpr double kLeast = 5;
   constexpr double kGreatest = 95;

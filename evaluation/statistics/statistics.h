@@ -85,6 +85,10 @@ struct Percentile {
 // interval as an estimate of the distribution's percentage.
 Percentile percentile_of(double published, const std::vector<double>& values);
 
+// The percentage of the values that are at or below `bound`, or at or above it, with its interval.
+Percentile percent_at_most(double bound, const std::vector<double>& values);
+Percentile percent_at_least(double bound, const std::vector<double>& values);
+
 // Where a value lies in a distribution, as far as the seeds can tell: inside if the whole interval
 // of its percentile lies from 5 to 95 %, outside if all of it lies beyond. One side of all seeds
 // shows that with kFewestOutside seeds, the middle of them with four.

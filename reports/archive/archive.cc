@@ -17,6 +17,7 @@
 #include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
+#include "reports/results/published_figures_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/program_name.h"
 #include "scenarios/document.h"
@@ -226,8 +227,9 @@ evaluation::Claim read_claim(const JsonNode& node, std::uint64_t seeds) {
   return claim;
 }
 
-// The claims and the floor of captures.
+// The published figures, the claims and the floor of captures.
 void read_paper_part(const JsonNode& root, evaluation::Results& results) {
+  results.published_figures = read_published_figures(root, results.rows);
   for (const JsonNode& claim : root["claims"].elements()) {
     results.claims.push_back(read_claim(claim, results.seed_count));
   }

@@ -4,6 +4,7 @@
 #include "recording/version.h"
 #include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/published_figures_json.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
@@ -95,6 +96,7 @@ std::string json(const evaluation::Results& results) {
                {"asymmetry_floor", floor_json(results.asymmetry_floor)},
                {"warnings", results.warnings}});
   for (const evaluation::Row& row : results.rows) root["rows"].push_back(row_json(row));
+  state_published_figures(results, root);
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
   root["performance"] = performance_json(results.performance);
   return file_text(root);

@@ -11,6 +11,7 @@
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
+#include "reports/results/published_figures_block.h"
 #include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -156,6 +157,9 @@ Document leaderboard_document(const Results& results, const std::string& summary
   if (std::optional<Block> alignment = alignment_block(results)) {
     alignment->prose = alignment_legend();
     document.blocks.push_back(std::move(*alignment));
+  }
+  if (std::optional<Block> figures = published_figures_block(results)) {
+    document.blocks.push_back(std::move(*figures));
   }
   if (Block failures = failures_block(results); !failures.prose.empty()) {
     document.blocks.push_back(std::move(failures));

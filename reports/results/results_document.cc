@@ -9,6 +9,7 @@
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/program_gap.h"
+#include "reports/results/published_figures_block.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -332,6 +333,9 @@ Document results_document(const Results& results, const std::string& summary) {
   }
   if (std::optional<Block> alignment = alignment_block(results)) {
     blocks.push_back(std::move(*alignment));
+  }
+  if (std::optional<Block> figures = published_figures_block(results)) {
+    blocks.push_back(std::move(*figures));
   }
   if (std::optional<Block> gap = program_gap_block(results)) blocks.push_back(std::move(*gap));
   if (gatherings_differ(results)) {

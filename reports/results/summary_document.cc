@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/published_figures_block.h"
 #include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -196,6 +198,9 @@ Document summary_document(const Results& results, const SummaryOptions& options,
   const std::vector<std::string> head = results_head(results, options.summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
   document.blocks = summary_blocks(results, options.table);
+  if (std::optional<Block> figures = published_figures_lines(results)) {
+    document.blocks.push_back(std::move(*figures));
+  }
   add_failures(results, document);
   const bool is_of_alignment = options.table == scenarios::TableKind::kAlignment;
   document.blocks.push_back(

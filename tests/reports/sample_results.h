@@ -3,7 +3,9 @@
 #define SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_
 
 #include <limits>
+#include <vector>
 
+#include "evaluation/scoring/published_figures.h"
 #include "evaluation/scoring/results.h"
 
 namespace simbench::reports {
@@ -142,6 +144,26 @@ inline evaluation::Results sample_results() {
                          .wall_seconds = 0.25,
                          .events_per_second = 4938268,
                          .simulated_seconds_per_second = 256};
+  return results;
+}
+
+// Bounds and a value of yoon2021_both: of its two seeds one keeps the first and none the second.
+inline evaluation::Results sample_figure_results() {
+  evaluation::Results results = sample_results();
+  const scenarios::PublishedFigure at_most{.pipeline = "yoon2021_both",
+                                           .metric = "amd_ms",
+                                           .at_most = 2.44,
+                                           .conditions = "a rig in a hall",
+                                           .source = "a paper"};
+  scenarios::PublishedFigure at_least = at_most;
+  at_least.at_most.reset();
+  at_least.at_least = 3;
+  scenarios::PublishedFigure value = at_most;
+  value.at_most.reset();
+  value.metric = "seed_recall";
+  value.value = 0.75;
+  results.published_figures =
+      evaluation::compare_figures(std::vector{at_most, at_least, value}, results.rows);
   return results;
 }
 

@@ -86,6 +86,15 @@ json full_document() {
       {"power_save",
        {{"idle_ms", 100}, {"beacon_interval_ms", 102.4}, {"dtim_period", 1}, {"wake_up_ms", 2}}}};
   document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
+  // A figure has one of the three numbers, which only the checks say.
+  const json figure = {{"pipeline", "yoon2021_both"},
+                       {"metric", "amd_ms"},
+                       {"at_most", 2},
+                       {"value", 1},
+                       {"at_least", 0},
+                       {"conditions", "a rig"},
+                       {"source", "a paper"}};
+  document["published_figures"] = json::array({figure});
   json& stream = document["cameras"]["streams"][0];
   stream["calibrated_delay_ms"] = 10.5;
   stream["calibrated_at"] = {{"width", 848}, {"height", 480}, {"mode_rate_hz", 30}};
@@ -248,6 +257,7 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<HostPrograms>();
   expect_all_members_written<Evaluation>();
   expect_all_members_written<Published>();
+  expect_all_members_written<PublishedFigure>();
   expect_all_members_written<StudioSubject>();
   expect_all_members_written<PublishedReprojection>();
   expect_all_members_written<Studio>();

@@ -203,6 +203,20 @@ TEST(EvaluateTest, PublishedValuesAreComparedWithTheSeeds) {
   EXPECT_FALSE(results.rows[1].published.has_value());
 }
 
+TEST(EvaluateTest, PublishedFiguresAreComparedWithTheSeeds) {
+  Scenario scenario = test_scenario();
+  scenario.published_figures = {{.pipeline = "arrival", .metric = "amd_ms", .at_most = 2.5},
+                                {.pipeline = "smooth", .metric = "amd_ms", .value = 100}};
+  const Results results = evaluate(scenario, test_source, {.seeds = 4}, nullptr);
+  ASSERT_EQ(results.published_figures.size(), 2U);
+  EXPECT_DOUBLE_EQ(results.published_figures[0].kept.percent, 50);  // AMD is the seed in ms
+  EXPECT_DOUBLE_EQ(results.published_figures[1].percentile.percent, 100);
+  const Results one =
+      evaluate(scenario, test_source, {.seeds = 4, .pipelines = {"smooth"}}, nullptr);
+  ASSERT_EQ(one.published_figures.size(), 1U);
+  EXPECT_EQ(one.published_figures[0].figure.pipeline, "smooth");
+}
+
 TEST(EvaluateTest, PublishedRmdvIsAttainableUpToTheBound) {
   Row row;
   row.amd_ms = make_series({1, 2});

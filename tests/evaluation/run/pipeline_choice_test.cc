@@ -21,6 +21,7 @@ using scenarios::InputError;
 using scenarios::Scenario;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kLag = "test_lag";
 
@@ -164,6 +165,28 @@ TEST(PipelineChoiceTest, NamesKnownPipelines) {
                     HasSubstr("arrival, smooth")));
   EXPECT_THAT(error_of(test_scenario(), {"smooth", "smooth"}), HasSubstr("twice"));
   EXPECT_EQ(error_of(test_scenario(), {"smooth"}), "no error");
+}
+
+TEST(PipelineChoiceTest, PublishedFiguresAreOfKnownMetrics) {
+  const auto error_of_figure = [](const char* metric, double at_most) {
+    Scenario scenario = test_scenario();
+    scenario.published_figures = {{.pipeline = "arrival", .metric = metric, .at_most = at_most}};
+    return error_of(scenario);
+  };
+  EXPECT_EQ(error_of_figure("amd_ms", 1), "no error");
+  EXPECT_EQ(error_of_figure("bias_ms", -1), "no error");
+  EXPECT_THAT(error_of_figure("exposure_spread_medain_ms", 1),
+              AllOf(HasSubstr("/published_figures/0/metric: found \"exposure_spread_medain_ms\""),
+                    HasSubstr("did you mean exposure_spread_median_ms")));
+  EXPECT_THAT(
+      error_of_figure("margin_ms", 1),
+      AllOf(HasSubstr("/published_figures/0/metric: found \"margin_ms\", which has no value "
+                      "of each seed, allowed: amd_ms, rmdv_ms"),
+            Not(HasSubstr("emitted"))));
+  EXPECT_THAT(error_of_figure("amd_ms", -1),
+              HasSubstr("/published_figures/0/at_most: found -1, allowed a number from 0"));
+  EXPECT_THAT(error_of_figure("seed_recall", 1.5),
+              HasSubstr("/published_figures/0/at_most: found 1.5, allowed a share from 0 to 1"));
 }
 
 TEST(PipelineChoiceTest, TheOracleHasNoEstimator) {

@@ -119,6 +119,17 @@ TEST(PercentileTest, AmongNoValuesIsNan) {
   EXPECT_THAT(percentile_of(1, {}).low, IsNan());
 }
 
+TEST(PercentileTest, OfABoundCountsEqualValuesAsKept) {
+  const Percentile below = percent_at_most(2, {1, 2, 3, 4, kNan});
+  EXPECT_DOUBLE_EQ(below.percent, 50);
+  EXPECT_DOUBLE_EQ(below.low, 100 * binomial_interval(2, 4).low);
+  EXPECT_DOUBLE_EQ(below.high, 100 * binomial_interval(2, 4).high);
+  EXPECT_DOUBLE_EQ(percent_at_least(2, {1, 2, 3, 4, kNan}).percent, 75);
+  EXPECT_DOUBLE_EQ(percent_at_least(-2, {-1, -3}).percent, 50);
+  EXPECT_THAT(percent_at_most(2, {kNan}).percent, IsNan());
+  EXPECT_THAT(percent_at_least(2, {}).low, IsNan());
+}
+
 // n values, k of them below the published one.
 Placement placement_among(int n, int k) {
   std::vector<double> values;

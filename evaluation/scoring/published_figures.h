@@ -1,0 +1,53 @@
+// Published figures of any metric, each beside the seeds of its pipeline's row.
+//
+// A value is inside or outside the seeds as a published AMD is (Placement). A bound, such as "below
+// 250 us", is a claim about nearly every recording: it holds if at least 95 % of them keep it, as
+// far as the seeds can tell. So it holds if the whole interval of the share of the seeds that keep
+// it lies from 95 % on, and fails if all of it lies below; else the seeds are too few. That all
+// seeds keep it takes kFewestOutside of them to show.
+//
+//   const scenarios::PublishedFigure claim{
+//       .pipeline = "libsoftwaresync", .metric = "exposure_spread_median_ms", .at_most = 0.25};
+//   if (compare_figure(claim, row).verdict == FigureVerdict::kFails) use(claim.number());
+//
+// Source: docs/design.md section 8.
+#ifndef SIMBENCH_EVALUATION_SCORING_PUBLISHED_FIGURES_H_
+#define SIMBENCH_EVALUATION_SCORING_PUBLISHED_FIGURES_H_
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "evaluation/statistics/statistics.h"
+#include "scenarios/published_figure.h"
+
+namespace simbench::evaluation {
+
+struct Row;
+
+enum class FigureVerdict : std::uint8_t {
+  kInside,  // of a value
+  kOutside,
+  kHolds,  // of a bound
+  kFails,
+  kTooFewSeeds,
+};
+
+struct FigureComparison {
+  scenarios::PublishedFigure figure;
+  Percentile percentile;  // of the published number among the seeds
+  Percentile kept;        // the seeds that keep a bound; NaN of a value
+  FigureVerdict verdict = FigureVerdict::kTooFewSeeds;
+};
+
+// One figure, whose metric must be a series of captures. Without a seed that has a value of the
+// metric the percentages are NaN. Linear in the seeds.
+FigureComparison compare_figure(const scenarios::PublishedFigure& figure, const Row& row);
+
+// Those whose pipelines have rows, in their order.
+std::vector<FigureComparison> compare_figures(std::span<const scenarios::PublishedFigure> figures,
+                                              std::span<const Row> rows);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_SCORING_PUBLISHED_FIGURES_H_
