@@ -100,10 +100,9 @@ const char* lacking(Need need) {
       return "cameras whose frames can be controlled";
     case Need::kTruth:
       return "the truth";
-    case Need::kFrameControl:
-      return "cameras whose frames can be controlled";
     case Need::kPolls:
     case Need::kHostStamps:
+    case Need::kLedClock:
     case Need::kFrames:
       break;
   }

@@ -69,6 +69,8 @@ TEST(EventTextTest, TheOtherKinds) {
             "outcome,2,false,200,a\\, b\\\\c\\r\\nd");
   EXPECT_EQ(to_line(AlignmentReport{7, true, 40, "1.2 ms, late"}),
             "alignment,7,true,40,1.2 ms\\, late");
+  EXPECT_EQ(to_line(LedSighting{7, {4294967295}, -1'000'000, 12'000'000}),
+            "led,7,4294967295,-1000000,12000000");
 }
 
 TEST(EventTextTest, ReadsBackWhateverWasWritten) {
