@@ -54,9 +54,7 @@ void KeptRecording::on_outcome(const SyncOutcome& outcome) { events_.emplace_bac
 
 void KeptRecording::on_alignment(const AlignmentReport& report) { events_.emplace_back(report); }
 
-void KeptRecording::on_led_sighting(const LedSighting& sighting) {
-  events_.emplace_back(sighting);
-}
+void KeptRecording::on_led_sighting(const LedSighting& sighting) { events_.emplace_back(sighting); }
 
 void KeptRecording::play(RecordingSink& sink) const {
   sink.on_start(layout_);

@@ -222,8 +222,8 @@ bool needs_polls(const DeviceTimeEntry& entry) {
   return std::ranges::count(entry.info.needs, Need::kPolls) > 0;
 }
 
-// Those of the rows, in their order: what needs the truth, stamps of a clock that a recording does not
-// name, or a clock of LEDs that no file of stamps shows, has none.
+// Those of the rows, in their order: what needs the truth, stamps of a clock that a recording does
+// not name, or a clock of LEDs that no file of stamps shows, has none.
 std::vector<const DeviceTimeEntry*> replayed_estimators() {
   std::vector<const DeviceTimeEntry*> entries;
   for (const DeviceTimeEntry& entry : device_time_algorithms()) {

@@ -142,8 +142,8 @@ class PipelineScorer final : public RecordingSink {
   std::optional<SetCounter> sets_;
   std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
   std::optional<HostErrors> host_errors_;
-  std::optional<AlignmentScores> alignment_;    // with is_steered
-  std::optional<KeptFrames> kept_;  // for offline estimators
+  std::optional<AlignmentScores> alignment_;  // with is_steered
+  std::optional<KeptFrames> kept_;            // for offline estimators
   std::int64_t genlock_index_errors_ = 0;
   std::vector<SyncOutcome> failures_;
 };

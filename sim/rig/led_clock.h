@@ -74,7 +74,7 @@ class LedClock {
   TrueTime last_begin_;
   KeyedStreams readings_;
   double skew_;
-  Nanoseconds zero_;                 // its time at the start of the capture
+  Nanoseconds zero_{};               // its time at the start of the capture
   std::vector<double> rows_;         // of the board, by camera, from 0 to 1
   std::vector<TrueTime> next_look_;  // by camera
 };

@@ -46,9 +46,9 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
                   "theil_sen_300", "kalman", "librealsense_global", "host_stamps", "rocsync_led"));
   std::vector<std::string> alignments = entry_names(capture_alignment_algorithms());
   alignments.resize(8);  // likewise
-  EXPECT_THAT(alignments, ElementsAre("free_run", "oracle", "libsoftwaresync", "rpi_sync",
-                                      "scheduled_action", "periodic_ptp", "pid_frame_rate",
-                                      "phase_rate"));
+  EXPECT_THAT(alignments,
+              ElementsAre("free_run", "oracle", "libsoftwaresync", "rpi_sync", "scheduled_action",
+                          "periodic_ptp", "pid_frame_rate", "phase_rate"));
   EXPECT_THAT(entry_names(gathering_algorithms()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",

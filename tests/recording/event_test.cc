@@ -88,11 +88,11 @@ TEST(KeptRecordingTest, PlaysEverythingBackInOrder) {
   record_something(kept);
   Transcript played;
   kept.play(played);
-  EXPECT_THAT(played.lines,
-              ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ", "poll 1 77 3 4 ",
-                          "outcome no answer ", "alignment 1 1 12 near ", "frame 1 100 2000 4 ",
-                          "pulse 4 0 -5 ", "pulse 5 0 6 ", "frame 0 101 1999 -1 ",
-                          "led 0 101 -2 5 "));
+  EXPECT_THAT(
+      played.lines,
+      ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ", "poll 1 77 3 4 ",
+                  "outcome no answer ", "alignment 1 1 12 near ", "frame 1 100 2000 4 ",
+                  "pulse 4 0 -5 ", "pulse 5 0 6 ", "frame 0 101 1999 -1 ", "led 0 101 -2 5 "));
 }
 
 TEST(KeptRecordingTest, PlaysTheSameTwice) {

@@ -143,8 +143,7 @@ TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
             "column 3 (stream): found 'infrared', allowed: depth, colour");
   EXPECT_EQ(line_error("outcome,1,yes,0,"),
             "column 3 (synchronised): found 'yes', allowed: true, false");
-  EXPECT_EQ(line_error("alignment,1,1,0,"),
-            "column 3 (aligned): found '1', allowed: true, false");
+  EXPECT_EQ(line_error("alignment,1,1,0,"), "column 3 (aligned): found '1', allowed: true, false");
   EXPECT_THAT(line_error("alignment,1,true,3"), HasSubstr("column 5 (message): missing"));
   EXPECT_THAT(line_error("pulse,1,2,3;;4"), HasSubstr("column 4 (error_ns): found '3;;4'"));
   EXPECT_THAT(line_error("pulse,1,2,3;"), HasSubstr("column 4 (error_ns): found '3;'"));

@@ -40,9 +40,7 @@ class Recorder final : public DeviceTimeEstimator {
   void on_adjustment(const ClockAdjustment& adjustment) override {
     given_.adjustments.push_back(adjustment);
   }
-  void on_led_sighting(const LedSample& sighting) override {
-    given_.sightings.push_back(sighting);
-  }
+  void on_led_sighting(const LedSample& sighting) override { given_.sightings.push_back(sighting); }
 
  private:
   Given& given_;
