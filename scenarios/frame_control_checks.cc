@@ -32,11 +32,11 @@ void check_lengths(const Scenario& scenario, const FrameControlModel& control) {
   }
   const double period_ms = scenario.trigger.period_ms();
   if (period_ms >= control.shortest_ms && period_ms <= control.longest_ms) return;
-  fail_at(scenario, "/trigger/rate_hz",
-          fmt::format("found {}, a grid that the cameras' rate cannot reach: frames of {:.6g} ms, "
-                      "allowed {} to {} ms (/cameras/frame_control/shortest_ms, longest_ms)",
-                      scenario.trigger.rate_hz, period_ms, control.shortest_ms,
-                      control.longest_ms));
+  fail_at(
+      scenario, "/trigger/rate_hz",
+      fmt::format("found {}, a grid that the cameras' rate cannot reach: frames of {:.6g} ms, "
+                  "allowed {} to {} ms (/cameras/frame_control/shortest_ms, longest_ms)",
+                  scenario.trigger.rate_hz, period_ms, control.shortest_ms, control.longest_ms));
 }
 
 // A frame that is a granule shorter still has room for the exposure.

@@ -35,9 +35,10 @@ namespace simbench {
 namespace {
 
 struct PhaseRateSettings {
-  std::size_t window = 300;  // frames of the line
+  std::size_t window = 60;  // frames of the line
   std::uint32_t learn_frames = 20;
-  double dead_band_granules = 0.6;
+  double dead_band_granules = 0.5;
+  double insert_gain = 2;
   Nanoseconds insert_band = from_us(150);
   Nanoseconds horizon = from_seconds(30);
   Nanoseconds tolerance = from_ms(1);  // "aligned", of what is reported
@@ -51,7 +52,8 @@ class PhaseRateCamera {
         camera_(camera),
         settings_(settings),
         limits_(camera.limits()),
-        line_(limits_.frame_length, settings.window) {}
+        line_(limits_.frame_length, settings.window),
+        insert_gain_(settings.insert_gain) {}
 
   Task<void> run();
 
@@ -66,6 +68,8 @@ class PhaseRateCamera {
   void observe(const FrameArrival& frame);
   std::uint32_t next_effect(const FrameArrival& frame) const;
   bool only_inserts() const;
+  // Moves below this are part of the camera's course.
+  double large_ns() const { return 20 * to_ns(limits_.granularity); }
   Correction exact(double error_ns) const;
   Correction inserted(double error_ns) const;
   Task<void> correct(std::uint32_t from, double error_ns);
@@ -84,7 +88,7 @@ class PhaseRateCamera {
   bool has_begun_ = false;  // with a first correction
   bool resets_length_ = false;
   HostTime exposed_{};
-  double insert_gain_ = 1;
+  double insert_gain_;
   bool knows_gain_ = false;
   Nanoseconds inserted_{};       // by which the last inserted frame was longer
   double before_insert_ns_ = 0;  // the error without it
@@ -176,13 +180,12 @@ Task<void> PhaseRateCamera::correct(std::uint32_t from, double error_ns) {
   ++controls_;
   line_.move(from, correction.by);
   line_.shift_grid(correction.periods);
-  const bool is_large = std::abs(to_ns(correction.by)) > 20 * to_ns(limits_.granularity);
-  // A large move may come a frame earlier or later than foretold: those frames are of no use.
-  quiet_until_ = from + (is_large ? 3 : 1);
-  if (is_large) {
-    line_.restart();
-    has_begun_ = true;
-  }
+  // A large move may come a frame earlier or later than foretold: those frames are of no use, and
+  // nothing is known until they are over. A small one is in the line at once.
+  if (std::abs(to_ns(correction.by)) <= large_ns()) co_return;
+  quiet_until_ = from + 3;
+  line_.restart();
+  has_begun_ = true;
 }
 
 // From the first frames after an inserted one.
@@ -220,7 +223,7 @@ Task<void> PhaseRateCamera::run() {
     has_frames_ = true;
     if (has_begun_ && frame->counter < quiet_until_ && line_.frames() == 0) continue;
     line_.add(frame->counter, exposed_);
-    if (line_.is_surprised(2 * to_ns(limits_.granularity))) line_.restart();
+    if (line_.is_surprised(large_ns())) line_.restart();
     const bool is_ready = line_.frames() >= settings_.learn_frames;
     if (frame->counter < quiet_until_ || !is_ready) continue;
     learn_gain();
@@ -270,14 +273,17 @@ CaptureAlignmentEntry phase_rate() {
   entry.info.source = "ours";
   entry.info.needs = {Need::kFrameControl};
   entry.info.parameters = {
-      number_parameter("window_frames", 300, 2, 1e5, "frames of the line", "ours: 10 s at 30 fps"),
+      number_parameter("window_frames", 60, 2, 1e5, "frames of the line", "ours: 2 s at 30 fps"),
       number_parameter("learn_frames", 20, 6, 1e5, "frames before a correction", "ours"),
-      number_parameter("dead_band_granules", 0.6, 0.5, 1e6,
+      number_parameter("dead_band_granules", 0.5, 0.5, 1e6,
                        "errors below this are left, where a frame can be longer or shorter",
-                       "ours: half a granule and a little"),
+                       "ours: what rounding leaves"),
       number_parameter("insert_band_ms", 0.15, 0.001, 1e3,
                        "errors below twice this are left, where frames can be inserted only",
                        "ours"),
+      number_parameter("insert_gain", 2, 0.5, 3,
+                       "how often an inserted frame moves by its excess, until that is learned",
+                       "libsoftwaresync's PhaseAligner, which lengthens by half of the shift"),
       number_parameter("horizon_s", 30, 0, 1e5, "time for which an inserted frame should last",
                        "ours"),
   };
@@ -287,6 +293,7 @@ CaptureAlignmentEntry phase_rate() {
     settings.learn_frames = static_cast<std::uint32_t>(parameters.number("learn_frames"));
     settings.dead_band_granules = parameters.number("dead_band_granules");
     settings.insert_band = from_ms(parameters.number("insert_band_ms"));
+    settings.insert_gain = parameters.number("insert_gain");
     settings.horizon = from_seconds(parameters.number("horizon_s"));
     return std::make_unique<PhaseRate>(settings);
   };

@@ -9,9 +9,9 @@
 //     correction = delta - k D, none below the dead band; the frame is shorter by it
 //
 // Towards zero is the code's conversion to an integer: a frame that is older than the packet's by
-// more than D/2 makes a correction beyond half a period, which moves to the same phase; where frames
-// come a whole period later than the server's packets, each packet costs a frame. There is no
-// feedback but the next packet, 30 frames later, and no estimate of the rate.
+// more than D/2 makes a correction beyond half a period, which moves to the same phase; where
+// frames come a whole period later than the server's packets, each packet costs a frame. There is
+// no feedback but the next packet, 30 frames later, and no estimate of the rate.
 //
 // Both are ready once the server has had `ready_frame` frames; that is what is reported. A
 // correction that the frame's limits cut is reported instead. The other cameras of the server's

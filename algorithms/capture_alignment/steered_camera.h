@@ -16,7 +16,8 @@
 //     while (true) {
 //       const ExposedFrame frame = co_await camera.next_frame();
 //       if (!camera.is_settled(frame)) continue;
-//       const bool is_taken = co_await camera.adjust_frame(error_of(frame));
+//       const Nanoseconds late = phase_error(frame.exposed.time_since_epoch(), camera.length());
+//       const bool is_taken = co_await camera.adjust_frame(-late);
 //       if (!is_taken) co_return;
 //     }
 //   }

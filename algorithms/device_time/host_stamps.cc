@@ -13,8 +13,7 @@ class HostStamps final : public DeviceTimeEstimator {
   GlobalTime stamp(const DeviceSample& sample) override {
     const DeviceStamp reading{static_cast<std::uint32_t>(sample.sensor.time_since_epoch().count())};
     const Nanoseconds age = age_of(reading, sample.arrival_steady);
-    return GlobalTime(
-        Nanoseconds(saturate(Int128{nanoseconds_of(sample.arrival)} - age.count())));
+    return GlobalTime(Nanoseconds(saturate(Int128{nanoseconds_of(sample.arrival)} - age.count())));
   }
 };
 

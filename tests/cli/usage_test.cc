@@ -64,8 +64,8 @@ TEST_F(Usage, VersionNamesTheCommit) {
 TEST_F(Usage, ListsWhatThereIs) {
   const ProgramResult names = run({"list"});
   EXPECT_EQ(names.status, 0);
-  for (const char* name : {"18cam_6host_45fps", "host_sync", "yoon2021_both", "device_time",
-                           "regression_30", "gathering", "genlock"}) {
+  for (const char* name : {"18cam_6host_45fps", "host_sync", "yoon2021_both", "capture_alignment",
+                           "rpi_sync", "device_time", "regression_30", "gathering", "genlock"}) {
     EXPECT_THAT(names.out, HasSubstr(name));
   }
   EXPECT_THAT(run({"list", "algorithms"}).out,
@@ -81,7 +81,7 @@ TEST_F(Usage, ListsWhatThereIs) {
   refuses({"list", "--format", "json"}, {"found 'json'", "with cameras only"});
   for (const auto& [what, name] :
        {std::pair{"scenarios", "18cam_6host_45fps"}, std::pair{"pipelines", "genlock"},
-        std::pair{"algorithms", "regression_30"}, std::pair{"cameras", "d455"},
+        std::pair{"algorithms", "pid_frame_rate"}, std::pair{"cameras", "d455"},
         std::pair{"oscillators", "ocxo"}, std::pair{"parts", "ptp_cards"},
         std::pair{"studies", "scalability"}, std::pair{"figures", "frame_errors"}}) {
     EXPECT_THAT(

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 // Loading a built-in scenario with that set fails with this message; "" if it does not.
-std::string refusal(const std::string& scenario, const std::vector<Override>& overrides) {
+std::string refusal_of_set(const std::string& scenario, const std::vector<Override>& overrides) {
   try {
     load_scenario(scenario, overrides);
   } catch (const InputError& error) {
@@ -26,16 +26,16 @@ std::string refusal(const std::string& scenario, const std::vector<Override>& ov
   return "";
 }
 
-std::string pi_refusal(const std::string& pointer, const std::string& value) {
-  return refusal("8cam_raspberry_30fps", {{pointer, value}});
+std::string refusal_by_pi(const std::string& pointer, const std::string& value) {
+  return refusal_of_set("8cam_raspberry_30fps", {{pointer, value}});
 }
 
 TEST(FrameControl, IsOfOneStream) {
   EXPECT_THAT(
-      refusal("8cam_raspberry_30fps",
-              {{"/cameras/model", "d455"},
-               {"/cameras/streams",
-                R"([{"kind": "depth", "width": 848, "height": 480, "bytes_per_pixel": 2,
+      refusal_of_set("8cam_raspberry_30fps",
+                     {{"/cameras/model", "d455"},
+                      {"/cameras/streams",
+                       R"([{"kind": "depth", "width": 848, "height": 480, "bytes_per_pixel": 2,
                      "mode_rate_hz": 30, "pipeline_latency_ms": 8, "latency_mode_periods": 0,
                      "shutter": "global", "readout_ms": 0},
                     {"kind": "colour", "width": 848, "height": 480, "bytes_per_pixel": 2,
@@ -46,57 +46,57 @@ TEST(FrameControl, IsOfOneStream) {
 }
 
 TEST(FrameControl, LengthsAreInOrder) {
-  EXPECT_EQ(pi_refusal("/cameras/frame_control/granularity_us", "17851"),
+  EXPECT_EQ(refusal_by_pi("/cameras/frame_control/granularity_us", "17851"),
             "--set /cameras/frame_control/granularity_us=17851: found 17851, allowed at most the "
             "shortest frame, 17.85 ms (/cameras/frame_control/shortest_ms)");
-  EXPECT_EQ(pi_refusal("/cameras/frame_control/shortest_ms", "876"),
+  EXPECT_EQ(refusal_by_pi("/cameras/frame_control/shortest_ms", "876"),
             "--set /cameras/frame_control/shortest_ms=876: found 876, allowed at most "
             "/cameras/frame_control/longest_ms, 875");
 }
 
 TEST(FrameControl, TheRateIsWithinTheLengths) {
-  EXPECT_THAT(pi_refusal("/cameras/frame_control/shortest_ms", "33.4"),
+  EXPECT_THAT(refusal_by_pi("/cameras/frame_control/shortest_ms", "33.4"),
               HasSubstr("/trigger/rate_hz: found 30, a grid that the cameras' rate cannot reach"));
-  EXPECT_THAT(pi_refusal("/cameras/frame_control/longest_ms", "33.3"),
+  EXPECT_THAT(refusal_by_pi("/cameras/frame_control/longest_ms", "33.3"),
               HasSubstr("/trigger/rate_hz: found 30, a grid that the cameras' rate cannot reach: "
                         "frames of 33.3333 ms, allowed 17.85 to 33.3 ms"));
-  EXPECT_EQ(pi_refusal("/cameras/frame_control/longest_ms", "33.4"), "");
+  EXPECT_EQ(refusal_by_pi("/cameras/frame_control/longest_ms", "33.4"), "");
 }
 
 TEST(FrameControl, ExposureAndAGranuleFitIntoAFrame) {
   // 33.3333 ms less 13.36 us.
-  EXPECT_EQ(pi_refusal("/cameras/exposure_ms", "33.31"), "");
-  EXPECT_EQ(pi_refusal("/cameras/exposure_ms", "33.33"),
+  EXPECT_EQ(refusal_by_pi("/cameras/exposure_ms", "33.31"), "");
+  EXPECT_EQ(refusal_by_pi("/cameras/exposure_ms", "33.33"),
             "--set /cameras/exposure_ms=33.33: found exposures of up to 33.33 ms, allowed at most "
             "33.32 ms: a frame of 33.3333 ms less a granule of "
             "/cameras/frame_control/granularity_us");
-  EXPECT_THAT(pi_refusal("/cameras/exposure_host_periods", "0.8"),
+  EXPECT_THAT(refusal_by_pi("/cameras/exposure_host_periods", "0.8"),
               HasSubstr("/cameras/exposure_ms: found exposures of up to 34.6667 ms"));
-  EXPECT_THAT(pi_refusal("/cameras/exposure_camera_periods", "0.8"),
+  EXPECT_THAT(refusal_by_pi("/cameras/exposure_camera_periods", "0.8"),
               HasSubstr("found exposures of up to 34.6667 ms"));
-  EXPECT_THAT(refusal("8cam_raspberry_30fps",
-                      {{"/cameras/auto_exposure/step_interval_exponential_ms", "500"},
-                       {"/cameras/auto_exposure/max_ms", "34"}}),
+  EXPECT_THAT(refusal_of_set("8cam_raspberry_30fps",
+                             {{"/cameras/auto_exposure/step_interval_exponential_ms", "500"},
+                              {"/cameras/auto_exposure/max_ms", "34"}}),
               HasSubstr("--set /cameras/auto_exposure/max_ms=34: found exposures of up to 34 ms"));
 }
 
 TEST(FrameControl, TheReadoutIsNoLongerThanAFrame) {
-  EXPECT_EQ(pi_refusal("/cameras/streams/0/readout_ms", "33.3"), "");
-  EXPECT_EQ(pi_refusal("/cameras/streams/0/readout_ms", "33.4"),
+  EXPECT_EQ(refusal_by_pi("/cameras/streams/0/readout_ms", "33.3"), "");
+  EXPECT_EQ(refusal_by_pi("/cameras/streams/0/readout_ms", "33.4"),
             "--set /cameras/streams/0/readout_ms=33.4: found 33.4, allowed at most the length of a "
             "frame, 33.3333 ms: the next one's readout begins then");
 }
 
 TEST(FrameControl, ACameraThatStampsWithItsHostsClockHasNoneToPoll) {
-  EXPECT_EQ(pi_refusal("/cameras/clock_poll/interval_ms", "100"),
+  EXPECT_EQ(refusal_by_pi("/cameras/clock_poll/interval_ms", "100"),
             "--set /cameras/clock_poll/interval_ms=100: found 100, allowed 0 where cameras stamp "
             "with their host's clock (/cameras/stamp_clock): they have no other that could be "
             "polled");
-  EXPECT_EQ(refusal("8cam_raspberry_30fps", {{"/cameras/clock_poll/interval_ms", "100"},
-                                             {"/cameras/stamp_clock", "camera"},
-                                             {"/cameras/frame_control", "null"}}),
+  EXPECT_EQ(refusal_of_set("8cam_raspberry_30fps", {{"/cameras/clock_poll/interval_ms", "100"},
+                                                    {"/cameras/stamp_clock", "camera"},
+                                                    {"/cameras/frame_control", "null"}}),
             "");
-  EXPECT_THAT(refusal("18cam_6host_45fps_lan", {{"/cameras/stamp_clock", "host"}}),
+  EXPECT_THAT(refusal_of_set("18cam_6host_45fps_lan", {{"/cameras/stamp_clock", "host"}}),
               HasSubstr("/cameras/clock_poll/interval_ms: found 100, allowed 0"));
 }
 

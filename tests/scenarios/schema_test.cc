@@ -58,7 +58,14 @@ json full_document() {
                            "asymmetry_ms": 0.5}]},
     "usb": {"delivery_quantiles_ms": [0, 0.3], "delivery_correlation": 0.1},
     "cameras": {"oscillator": {"class": "ocxo"}, "host_of_camera": [0,0,0, 1,1,1, 2,2,2, 3,3,3, 4,4,4, 5,5,5],
-                "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3]},
+                "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3],
+                "stamp_clock": "host",
+                "frame_control": {
+                  "adjust_frame": true, "insert_frame": true, "frame_length": true,
+                  "start_at": true, "granularity_us": 10, "shortest_ms": 5, "longest_ms": 50,
+                  "latency_frames": 2, "delay_ms": 1, "delay_exponential_ms": 1,
+                  "loss_probability": 0, "insert_stretches": 1, "insert_noise_sigma_us": 1,
+                  "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1}},
     "studio": )" + studio_of("18cam_6host_30fps_studio"));
   json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
   // Beside which there is no wireless cell, and no link has a latency of its own, which only the
@@ -89,6 +96,7 @@ json full_document() {
                                       {"last_ms", 1000},         {"step_ms", 1},
                                       {"missed_probability", 0}, {"wrong_probability", 0},
                                       {"skew_sigma_ppm", 20},    {"row_spread_share", 0}};
+  document["pipelines"][0]["capture_alignment"] = "free_run";
   document["pipelines"][0]["host_sync"] = {
       {"program",
        {{"master", json::array({json::array({"chronyd", "-d"})})},
@@ -238,6 +246,7 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<ClockPoll>();
   expect_all_members_written<CalibrationError>();
   expect_all_members_written<LedClockModel>();
+  expect_all_members_written<FrameControlModel>();
   expect_all_members_written<BackendStamp>();
   expect_all_members_written<Cameras>();
   expect_all_members_written<Usb>();
@@ -262,6 +271,7 @@ TEST(SchemaDrift, ChoicesHaveTheWordsOfTheSchema) {
       {"/cameras/sync_mode", all_texts<SyncMode>()},
       {"/cameras/streams/*/kind", all_texts<StreamKind>()},
       {"/cameras/streams/*/shutter", all_texts<ShutterKind>()},
+      {"/cameras/stamp_clock", all_texts<StampClock>()},
       {"/usb/sharing", all_texts<UsbSharing>()},
       {"/evaluation/stream", all_texts<StreamKind>()},
       {"/evaluation/table", all_texts<TableKind>()},
