@@ -35,7 +35,8 @@
   FILE(two_way_poll)               \
   FILE(offset_filters)             \
   FILE(librealsense_global)        \
-  FILE(host_stamps)
+  FILE(host_stamps)                \
+  FILE(rocsync_led)
 #define SIMBENCH_GATHERING(FILE) \
   FILE(yoon2021)                 \
   FILE(genlock)                  \

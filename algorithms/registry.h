@@ -41,6 +41,7 @@ enum class Need : std::uint8_t {
   kFrameControl,    // Host::frame_controls()
   kPolls,           // polls of the cameras' clocks in the recording
   kHostStamps,      // cameras that stamp with their host's steady clock
+  kLedClock,        // sightings of a clock of LEDs in the recording
   kTruth,           // the truth: simulation only
 };
 

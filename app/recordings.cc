@@ -44,39 +44,51 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-class PollCounter final : public ForwardingSink {
+// Whether a capture has what some estimators need besides frames.
+class InputCheck final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
   void on_poll(const DevicePoll& poll) override {
-    ++polls_;
+    has_polls_ = true;
     sink().on_poll(poll);
   }
-  std::uint64_t polls() const { return polls_; }
+  void on_led_sighting(const LedSighting& sighting) override {
+    has_sightings_ = true;
+    sink().on_led_sighting(sighting);
+  }
+
+  // What the capture lacks of a need; null if nothing.
+  const char* lacking(Need need) const {
+    if (need == Need::kPolls && !has_polls_) return "polls of the cameras' clocks";
+    if (need == Need::kLedClock && !has_sightings_) return "sightings of a clock of LEDs";
+    return nullptr;
+  }
 
  private:
-  std::uint64_t polls_ = 0;
+  bool has_polls_ = false;
+  bool has_sightings_ = false;
 };
 
-// The recorded captures. Refuses one without polls to a pipeline that needs them: its stamps would
-// be bare arrivals.
-class PollCheck final : public RecordingSource {
+// The recorded captures. Refuses one without polls, or without sightings of an LED clock, to a
+// pipeline that needs them: its stamps would be bare arrivals, or none of a common clock.
+class CheckedSource final : public RecordingSource {
  public:
   // `choices` outlive it.
-  PollCheck(std::unique_ptr<RecordingSource> source,
-            const std::vector<evaluation::PipelineChoice>& choices)
+  CheckedSource(std::unique_ptr<RecordingSource> source,
+                const std::vector<evaluation::PipelineChoice>& choices)
       : source_(std::move(source)), choices_(choices) {}
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
-    PollCounter counter(sink);
-    RecordingCost cost = source_->record(request, counter);
-    if (counter.polls() > 0) return cost;
+    InputCheck check(sink);
+    RecordingCost cost = source_->record(request, check);
     for (const evaluation::PipelineChoice& choice : choices_) {
-      const std::vector<Need>& needs = choice.device_time.info.needs;
       if (choice.pipeline.name != request.pipeline) continue;
-      if (std::find(needs.begin(), needs.end(), Need::kPolls) == needs.end()) continue;
-      throw RecordingFailed(
-          fmt::format("{} needs polls of the cameras' clocks, and none was recorded",
-                      choice.device_time.info.name));
+      for (const Need need : choice.device_time.info.needs) {
+        const char* const missing = check.lacking(need);
+        if (missing == nullptr) continue;
+        throw RecordingFailed(fmt::format("{} needs {}, and none was recorded",
+                                          choice.device_time.info.name, missing));
+      }
     }
     return cost;
   }
@@ -155,7 +167,7 @@ std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pip
 
 std::unique_ptr<RecordingSource> RecordedRun::source(
     const std::vector<evaluation::PipelineChoice>& choices) const {
-  return interruptible(std::make_unique<PollCheck>(make_recorded_source(folder_), choices));
+  return interruptible(std::make_unique<CheckedSource>(make_recorded_source(folder_), choices));
 }
 
 evaluation::Results RecordedRun::evaluate(const std::vector<std::string>& pipelines,

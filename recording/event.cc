@@ -18,6 +18,7 @@ struct Notifier {
   }
   void operator()(const SyncOutcome& outcome) const { sink.on_outcome(outcome); }
   void operator()(const AlignmentReport& report) const { sink.on_alignment(report); }
+  void operator()(const LedSighting& sighting) const { sink.on_led_sighting(sighting); }
 };
 
 }  // namespace
@@ -52,6 +53,8 @@ void KeptRecording::on_exchange(std::uint32_t host, const Exchange& exchange) {
 void KeptRecording::on_outcome(const SyncOutcome& outcome) { events_.emplace_back(outcome); }
 
 void KeptRecording::on_alignment(const AlignmentReport& report) { events_.emplace_back(report); }
+
+void KeptRecording::on_led_sighting(const LedSighting& sighting) { events_.emplace_back(sighting); }
 
 void KeptRecording::play(RecordingSink& sink) const {
   sink.on_start(layout_);

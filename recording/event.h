@@ -39,7 +39,7 @@ struct ExchangeEvent {
 };
 
 using RecordingEvent = std::variant<FrameEvent, PulseEvent, ClockAdjustment, DevicePoll,
-                                    ExchangeEvent, SyncOutcome, AlignmentReport>;
+                                    ExchangeEvent, SyncOutcome, AlignmentReport, LedSighting>;
 
 // Calls the member of `sink` for this event.
 void notify(const RecordingEvent& event, RecordingSink& sink);
@@ -58,6 +58,7 @@ class KeptRecording final : public RecordingSink {
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
   void on_alignment(const AlignmentReport& report) override;
+  void on_led_sighting(const LedSighting& sighting) override;
 
   // The same calls with the same values in the same order, on_start first.
   void play(RecordingSink& sink) const;

@@ -112,6 +112,11 @@ struct Appender {
     line += ',';
     append_escaped(line, report.message);
   }
+  void operator()(const LedSighting& sighting) const {
+    line += "led";
+    append_fields(line, sighting.camera, sighting.sensor.us, sighting.led_start_ns,
+                  sighting.led_end_ns);
+  }
 };
 
 FrameEvent read_frame_event(FieldReader& fields) {
@@ -182,6 +187,13 @@ AlignmentReport read_alignment(FieldReader& fields) {
           .message = fields.text("message")};
 }
 
+LedSighting read_led_sighting(FieldReader& fields) {
+  return {.camera = fields.whole<std::uint32_t>("camera"),
+          .sensor = {fields.whole<std::uint32_t>("sensor_us")},
+          .led_start_ns = fields.whole<std::int64_t>("led_start_ns"),
+          .led_end_ns = fields.whole<std::int64_t>("led_end_ns")};
+}
+
 RecordingEvent read_members(std::string_view kind, FieldReader& fields) {
   if (kind == "frame") return read_frame_event(fields);
   if (kind == "pulse") return read_pulse(fields);
@@ -190,7 +202,8 @@ RecordingEvent read_members(std::string_view kind, FieldReader& fields) {
   if (kind == "exchange") return read_exchange(fields);
   if (kind == "outcome") return read_outcome(fields);
   if (kind == "alignment") return read_alignment(fields);
-  fields.fail("kind", "frame, pulse, adjustment, poll, exchange, outcome, alignment");
+  if (kind == "led") return read_led_sighting(fields);
+  fields.fail("kind", "frame, pulse, adjustment, poll, exchange, outcome, alignment, led");
 }
 
 }  // namespace

@@ -56,6 +56,9 @@ class ForkedSink final : public RecordingSink {
   void on_alignment(const AlignmentReport& report) override {
     each([&](RecordingSink& sink) { sink.on_alignment(report); });
   }
+  void on_led_sighting(const LedSighting& sighting) override {
+    each([&](RecordingSink& sink) { sink.on_led_sighting(sighting); });
+  }
 
  private:
   struct Branch {

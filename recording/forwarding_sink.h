@@ -39,6 +39,7 @@ class ForwardingSink : public RecordingSink {
   }
   void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
   void on_alignment(const AlignmentReport& report) override { sink_.on_alignment(report); }
+  void on_led_sighting(const LedSighting& sighting) override { sink_.on_led_sighting(sighting); }
 
  protected:
   RecordingSink& sink() { return sink_; }

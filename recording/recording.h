@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -86,6 +87,18 @@ struct DevicePoll {
   SteadyTime t1_steady{};
 };
 
+// What an image shows of a clock of LEDs: those that were lit during the exposure, an arc from the
+// begin of the first one's step to the end of the last one's, on the clock's own time. Read from
+// the image, so a reading may be wrong.
+struct LedSighting {
+  std::uint32_t camera = 0;
+  DeviceStamp sensor;  // of the frame, which was reported just before
+  std::int64_t led_start_ns = 0;
+  std::int64_t led_end_ns = 0;
+
+  Nanoseconds middle() const { return Nanoseconds(std::midpoint(led_start_ns, led_end_ns)); }
+};
+
 struct CameraLayout {
   std::uint32_t host = 0;
 };
@@ -119,6 +132,8 @@ class RecordingSink {
   virtual void on_outcome(const SyncOutcome& outcome) = 0;
   // Captures whose exposures are steered only; whoever does not care may ignore them.
   virtual void on_alignment(const AlignmentReport& /*report*/) {}
+  // Captures with a clock of LEDs only; likewise. After its frame, before the camera's next one.
+  virtual void on_led_sighting(const LedSighting& /*sighting*/) {}
 };
 
 // Which capture to make: the pipeline decides which host_sync runs and which load is drawn.

@@ -49,6 +49,7 @@ struct NumbersCheck {
   }
   void operator()(const SyncOutcome& event) const { host("slave", event.slave); }
   void operator()(const AlignmentReport& event) const { camera(event.camera); }
+  void operator()(const LedSighting& event) const { camera(event.camera); }
 
   static void check(const char* name, std::size_t number, std::size_t count) {
     if (number < count) return;
@@ -433,6 +434,7 @@ class RecordingWriter::State final : public RecordingSink {
   }
   void on_outcome(const SyncOutcome& outcome) override { add(outcome); }
   void on_alignment(const AlignmentReport& report) override { add(report); }
+  void on_led_sighting(const LedSighting& sighting) override { add(sighting); }
 
  private:
   void add(const RecordingEvent& event) {

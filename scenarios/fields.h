@@ -203,13 +203,16 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameControlModel, adjust_frame, insert_frame
                                    latency_frames, delay_ms, delay_exponential_ms, loss_probability,
                                    insert_stretches, insert_noise_sigma_us, start_jitter_sigma_us,
                                    frame_jitter_sigma_us)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LedClockModel, interval_ms, first_ms, last_ms, step_ms,
+                                   missed_probability, wrong_probability, skew_sigma_ppm,
+                                   row_spread_share)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     Cameras, count, cameras_per_host, host_of_camera, skew_of_camera_ppm, model, sync_mode,
     common_start, start_spread_ms, streams, oscillator, clock_epoch_max_ms, latency_camera_max_ms,
     exposure_ms, exposure_camera_periods, exposure_host_periods, trigger_to_exposure_us,
     genlock_guard_fraction, slave_free_run_after_periods, sensor_stamp_jitter_sigma_us,
     drop_probability, unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll, auto_exposure,
-    calibration, frame_control, stamp_clock)
+    calibration, frame_control, led_clock, stamp_clock)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackendStamp, host_uptime_h, resolution_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Usb, bandwidth_mb_per_s, sharing,
                                                 cameras_per_controller, buffered_frames,

@@ -346,6 +346,20 @@ struct FrameControlModel {
   double frame_jitter_sigma_us = 0;   // of each exposure, which the next frames do not inherit
 };
 
+// A ring of 100 LEDs of which one is lit at a time, and a counter of its turns, in view of all
+// cameras (sim/rig/led_clock.h: which images show the time, and what is left out).
+struct LedClockModel {
+  double interval_ms = 0;  // of each camera, an image is looked at once in so long (0: all)
+  // In view for so long from the start of the capture and before its end (both 0: always).
+  double first_ms = 0;
+  double last_ms = 0;
+  double step_ms = 0;             // each LED is lit for
+  double missed_probability = 0;  // per image that is looked at: nothing is read
+  double wrong_probability = 0;   // per image that is read: the turn is counted wrong by one
+  double skew_sigma_ppm = 0;      // of its own oscillator: one draw per seed
+  double row_spread_share = 0;    // of a rolling readout: the board's row, one draw per camera
+};
+
 struct Cameras {
   std::int64_t count = 0;
   std::int64_t cameras_per_host = 0;         // camera j is on host j / cameras_per_host, unless
@@ -374,6 +388,7 @@ struct Cameras {
   AutoExposure auto_exposure;
   CalibrationError calibration{};
   std::optional<FrameControlModel> frame_control{};
+  std::optional<LedClockModel> led_clock{};
   StampClock stamp_clock{};  // of the sensor and frame stamps
 
   // Null if the cameras do not have that stream.

@@ -38,6 +38,12 @@ struct PollSample {
   SteadyTime t1_steady{};
 };
 
+// What a frame shows of a clock of LEDs that all cameras of the rig see (recording.h: LedSighting).
+struct LedSample {
+  DeviceTime sensor{};  // of the frame, unwrapped with the camera's others
+  Nanoseconds led{};    // the middle of its lit LEDs, from the zero of the LED clock
+};
+
 class EstimatorBank;
 
 class DeviceTimeEstimator {
@@ -57,8 +63,10 @@ class DeviceTimeEstimator {
   // An offline estimator gets all of them before learn().
   virtual void on_poll(const PollSample& /*poll*/) {}
   virtual void on_adjustment(const ClockAdjustment& /*adjustment*/) {}
-  // True if stamps count from the camera's own first frame instead of a host's zero; to combine
-  // cameras, add one common anchor.
+  // A sighting of the LED clock, after its frame and likewise; also in the warm-up.
+  virtual void on_led_sighting(const LedSample& /*sighting*/) {}
+  // True if stamps count from the camera's own first frame, or from another zero that all cameras
+  // share, instead of a host's zero; to combine cameras, add one common anchor.
   virtual bool relative() const { return false; }
   // For speed alone (estimator_bank.h): estimators like this fresh one for many cameras, or null.
   virtual std::unique_ptr<EstimatorBank> bank(std::size_t cameras) const;

@@ -27,6 +27,7 @@ class Adapter : public DeviceTimeEstimator {
   void on_adjustment(const ClockAdjustment& adjustment) override {
     inner_->on_adjustment(adjustment);
   }
+  void on_led_sighting(const LedSample& sighting) override { inner_->on_led_sighting(sighting); }
   bool relative() const override { return inner_->relative(); }
 
  protected:

@@ -102,6 +102,7 @@ const char* lacking(Need need) {
       return "the truth";
     case Need::kPolls:
     case Need::kHostStamps:
+    case Need::kLedClock:
     case Need::kFrames:
       break;
   }

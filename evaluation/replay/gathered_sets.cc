@@ -65,7 +65,8 @@ ChosenStreams chosen_streams(const std::vector<CameraStream>& streams, const std
 
 bool runs_on_recordings(const AlgorithmInfo& info) {
   return std::ranges::none_of(info.needs, [](Need need) {
-    return need == Need::kPolls || need == Need::kHostStamps || need == Need::kTruth;
+    return need == Need::kPolls || need == Need::kHostStamps || need == Need::kLedClock ||
+           need == Need::kTruth;
   });
 }
 

@@ -222,12 +222,15 @@ bool needs_polls(const DeviceTimeEntry& entry) {
   return std::ranges::count(entry.info.needs, Need::kPolls) > 0;
 }
 
-// Those of the rows, in their order: what needs the truth, or stamps of a clock that a recording
-// does not name, has none.
+// Those of the rows, in their order: what needs the truth, stamps of a clock that a recording does
+// not name, or a clock of LEDs that no file of stamps shows, has none.
 std::vector<const DeviceTimeEntry*> replayed_estimators() {
   std::vector<const DeviceTimeEntry*> entries;
   for (const DeviceTimeEntry& entry : device_time_algorithms()) {
-    if (!entry.make || std::ranges::count(entry.info.needs, Need::kHostStamps) > 0) continue;
+    const bool lacks = std::ranges::any_of(entry.info.needs, [](Need need) {
+      return need == Need::kHostStamps || need == Need::kLedClock;
+    });
+    if (!entry.make || lacks) continue;
     entries.push_back(&entry);
   }
   return entries;

@@ -176,6 +176,10 @@ std::string lacking(const Scenario& scenario, Need need) {
                  ? ""
                  : "cameras that stamp with their host's clock (/cameras/stamp_clock is not "
                    "\"host\")";
+    case Need::kLedClock:
+      return scenario.cameras.led_clock
+                 ? ""
+                 : "a clock of LEDs that the cameras see (there is no /cameras/led_clock)";
     case Need::kFrames:
     case Need::kTruth:
       return "";

@@ -172,6 +172,15 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     ForwardingSink::on_poll(poll);
   }
 
+  void on_led_sighting(const LedSighting& sighting) override {
+    if (sighting.camera < companions_.size()) {
+      Companion& companion = companions_[sighting.camera];
+      const DeviceTime sensor = companion.unwrapper.unwrap(sighting.sensor);
+      if (companion.from_start) companion.from_start->on_led_sighting({sensor, sighting.middle()});
+    }
+    ForwardingSink::on_led_sighting(sighting);
+  }
+
   void on_stamp(const DeferredFrame& frame, GlobalTime global) override {
     const std::optional<std::size_t> index = frame_index(frame.source, frame.sample.sensor);
     if (!index) return;

@@ -255,6 +255,13 @@ void PipelineScorer::on_alignment(const AlignmentReport& report) {
   if (alignment_) alignment_->add(report);
 }
 
+void PipelineScorer::on_led_sighting(const LedSighting& sighting) {
+  const LedSample sample = {sources_[sighting.camera].unwrapper.unwrap(sighting.sensor),
+                            sighting.middle()};
+  if (bank_) bank_->at(sighting.camera).on_led_sighting(sample);
+  if (second_bank_) second_bank_->at(sighting.camera).on_led_sighting(sample);
+}
+
 SeedScore PipelineScorer::finish() {
   SIMBENCH_ASSERT(table_.has_value(), "a capture starts before it ends");
   if (offline_) stamp_offline();

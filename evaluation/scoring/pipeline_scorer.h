@@ -80,6 +80,7 @@ class PipelineScorer final : public RecordingSink {
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
   void on_alignment(const AlignmentReport& report) override;
+  void on_led_sighting(const LedSighting& sighting) override;
 
   // Returns the scores of the capture with pulses, without seed and cost. Call once.
   SeedScore finish();

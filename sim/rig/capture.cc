@@ -57,6 +57,9 @@ void Capture::start(CameraWorld& world, CameraStamps& stamps, std::function<void
   for (const SystemClock* clock : clocks_) steady_starts_.push_back(clock->steady(now));
   on_end_ = std::move(on_end);
   reports_.start(now);
+  if (scenario_.cameras.led_clock) {
+    led_clock_.emplace(scenario_, world.seed(), world.last_exposure());
+  }
   for (const scenarios::Fault& fault : scenario_.faults) {
     const auto* step = std::get_if<scenarios::ClockStep>(&fault);
     if (step == nullptr) continue;
@@ -170,6 +173,7 @@ void Capture::report_frames(TrueTime last) {
 void Capture::report_block(std::size_t first, std::size_t end) {
   records_.clear();
   truths_.clear();
+  flushed_ = 0;
   const std::vector<CameraFrame>& frames = period_->frames;
   for (std::size_t i = first; i < end; ++i) {
     if (i + 2 * kAhead < end) clocks_[frames[i + 2 * kAhead].host]->prefetch();
@@ -177,8 +181,26 @@ void Capture::report_block(std::size_t first, std::size_t end) {
     const CameraFrame& frame = frames[i];
     if (frame.fate != FrameFate::kDelivered || is_stopped(frame)) continue;
     stamp(frame, period_stamps_[i]);
+    if (led_clock_) report_sighting(frame);
   }
-  if (!records_.empty()) reports_.frames(records_, truths_);
+  flush();
+}
+
+void Capture::flush() {
+  if (flushed_ == records_.size()) return;
+  reports_.frames(std::span(records_).subspan(flushed_), std::span(truths_).subspan(flushed_));
+  flushed_ = records_.size();
+}
+
+// Of the LED clock, if the newest frame of the block shows it: after the frame.
+void Capture::report_sighting(const CameraFrame& frame) {
+  const auto lit = led_clock_->read(frame, world_->cameras().stream(frame.stream).readout);
+  if (!lit) return;
+  flush();
+  reports_.sighting({.camera = frame.camera,
+                     .sensor = records_.back().sensor,
+                     .led_start_ns = lit->start.count(),
+                     .led_end_ns = lit->end.count()});
 }
 
 void Capture::report_single(std::size_t number) {

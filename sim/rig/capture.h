@@ -29,6 +29,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,7 @@
 #include "sim/rig/camera_stamps.h"
 #include "sim/rig/camera_world.h"
 #include "sim/rig/capture_reports.h"
+#include "sim/rig/led_clock.h"
 #include "sim/usb/backend_stamp.h"
 
 namespace simbench::sim {
@@ -85,11 +87,14 @@ class Capture {
   void report_frames(TrueTime last);
   void report_block(std::size_t first, std::size_t end);
   void report_single(std::size_t number);
+  void report_sighting(const CameraFrame& frame);
   // Whether its host is stopped when a frame comes.
   bool is_stopped(const CameraFrame& frame) const {
     return outages_.host_stopped(static_cast<PeerId>(frame.host), date(frame.at));
   }
   void stamp(const CameraFrame& frame, const FrameStamps& stamps);
+  // Reports those of the block that are not reported.
+  void flush();
 
   const scenarios::Scenario& scenario_;
   Engine& engine_;
@@ -104,6 +109,7 @@ class Capture {
   std::vector<SteadyTime> steady_starts_;  // what the hosts' steady clocks read at the start
   std::vector<Nanoseconds> host_errors_;
   std::function<void()> on_end_;
+  std::optional<LedClock> led_clock_;  // from the start on, where there is one
 
   CameraWorld* world_ = nullptr;
   CameraStamps* stamps_ = nullptr;
@@ -120,6 +126,7 @@ class Capture {
   // A block of frames.
   std::vector<FrameRecord> records_;
   std::vector<FrameTruth> truths_;
+  std::size_t flushed_ = 0;  // the first so many are reported
 };
 
 }  // namespace simbench::sim

@@ -67,6 +67,7 @@ class CaptureReports {
     sink_.on_poll(poll);
     if (feeds_ != nullptr) feeds_->on_poll(poll, host);
   }
+  void sighting(const LedSighting& sighting) const { sink_.on_led_sighting(sighting); }
   // Whether somebody besides the recording wants frames: then a block has one frame.
   bool are_single() const {
     return observer_ != nullptr || (feeds_ != nullptr && feeds_->is_used());

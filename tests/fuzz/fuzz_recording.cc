@@ -64,6 +64,7 @@ class Folder {
         sink.on_frame({}, nullptr);
         sink.on_outcome({});
         sink.on_alignment({});
+        sink.on_led_sighting({});
       }
       if (seed == 1) {
         writer.end({});

@@ -36,6 +36,9 @@ class Transcript final : public RecordingSink {
   void on_alignment(const AlignmentReport& report) override {
     add("alignment", report.camera, report.aligned, report.controls, report.message);
   }
+  void on_led_sighting(const LedSighting& sighting) override {
+    add("led", sighting.camera, sighting.sensor.us, sighting.led_start_ns, sighting.led_end_ns);
+  }
 
   std::vector<std::string> lines;
 
@@ -77,6 +80,7 @@ void record_something(RecordingSink& sink) {
   errors[1] = Nanoseconds(6);
   sink.on_pulse({.pulse = 5, .at = {}, .host_errors = errors});
   sink.on_frame(frame_of(0, 101, 1999), nullptr);
+  sink.on_led_sighting({.camera = 0, .sensor = {101}, .led_start_ns = -2, .led_end_ns = 5});
 }
 
 TEST(KeptRecordingTest, PlaysEverythingBackInOrder) {
@@ -84,10 +88,11 @@ TEST(KeptRecordingTest, PlaysEverythingBackInOrder) {
   record_something(kept);
   Transcript played;
   kept.play(played);
-  EXPECT_THAT(played.lines,
-              ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ", "poll 1 77 3 4 ",
-                          "outcome no answer ", "alignment 1 1 12 near ", "frame 1 100 2000 4 ",
-                          "pulse 4 0 -5 ", "pulse 5 0 6 ", "frame 0 101 1999 -1 "));
+  EXPECT_THAT(
+      played.lines,
+      ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ", "poll 1 77 3 4 ",
+                  "outcome no answer ", "alignment 1 1 12 near ", "frame 1 100 2000 4 ",
+                  "pulse 4 0 -5 ", "pulse 5 0 6 ", "frame 0 101 1999 -1 ", "led 0 101 -2 5 "));
 }
 
 TEST(KeptRecordingTest, PlaysTheSameTwice) {
@@ -103,7 +108,7 @@ TEST(KeptRecordingTest, PlaysTheSameTwice) {
 TEST(KeptRecordingTest, BeginsAnewWithTheNextCapture) {
   KeptRecording kept;
   record_something(kept);
-  EXPECT_EQ(kept.events().size(), 9U);
+  EXPECT_EQ(kept.events().size(), 10U);
   kept.on_start({.hosts = 1, .cameras = {{0}}, .frame_rate_hz = 50});
   EXPECT_EQ(kept.events().size(), 0U);
   EXPECT_EQ(kept.layout().cameras.size(), 1U);

@@ -69,6 +69,8 @@ TEST(EventTextTest, TheOtherKinds) {
             "outcome,2,false,200,a\\, b\\\\c\\r\\nd");
   EXPECT_EQ(to_line(AlignmentReport{7, true, 40, "1.2 ms, late"}),
             "alignment,7,true,40,1.2 ms\\, late");
+  EXPECT_EQ(to_line(LedSighting{7, {4294967295}, -1'000'000, 12'000'000}),
+            "led,7,4294967295,-1000000,12000000");
 }
 
 TEST(EventTextTest, ReadsBackWhateverWasWritten) {
@@ -129,7 +131,7 @@ TEST(EventTextTest, EveryPrefixOfALineIsSafe) {
 TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_EQ(line_error("fraem,1"),
             "column 1 (kind): found 'fraem', allowed: frame, pulse, adjustment, poll, exchange, "
-            "outcome, alignment");
+            "outcome, alignment, led");
   EXPECT_EQ(line_error("poll,1x,2,3,4,5,6"),
             "column 2 (camera): found '1x', allowed: a whole number from 0 to 4294967295");
   EXPECT_EQ(line_error("poll,1,4294967296,3,4,5,6"),

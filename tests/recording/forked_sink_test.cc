@@ -45,6 +45,7 @@ class Failing final : public RecordingSink {
   void on_exchange(std::uint32_t, const Exchange&) override { EXPECT_FALSE(has_failed_); }
   void on_outcome(const SyncOutcome&) override { EXPECT_FALSE(has_failed_); }
   void on_alignment(const AlignmentReport&) override { EXPECT_FALSE(has_failed_); }
+  void on_led_sighting(const LedSighting&) override { EXPECT_FALSE(has_failed_); }
 
  private:
   int left_;

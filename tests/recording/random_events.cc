@@ -139,6 +139,12 @@ struct Same {
     };
     return all(a) == all(b);
   }
+  bool operator()(const LedSighting& a, const LedSighting& b) const {
+    const auto all = [](const LedSighting& s) {
+      return members(s.camera, s.sensor.us, s.led_start_ns, s.led_end_ns);
+    };
+    return all(a) == all(b);
+  }
   template <class A, class B>
   bool operator()(const A&, const B&) const {
     return false;
@@ -149,7 +155,7 @@ struct Same {
 
 RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
   const auto host = [&] { return any_number<std::uint32_t>(random) % bounds.hosts; };
-  switch (random() % 7) {
+  switch (random() % 8) {
     case 0: {
       PulseEvent event;
       event.pulse = any_number<std::int64_t>(random);
@@ -193,6 +199,11 @@ RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
     case 5:
       return AlignmentReport{any_number<std::uint32_t>(random) % bounds.cameras, random() % 2 == 0,
                              any_number<std::uint32_t>(random), any_text(random)};
+    case 6:
+      return LedSighting{any_number<std::uint32_t>(random) % bounds.cameras,
+                         {any_number<std::uint32_t>(random)},
+                         any_number<std::int64_t>(random),
+                         any_number<std::int64_t>(random)};
     default:
       return any_frame(random, bounds.cameras);
   }

@@ -101,6 +101,10 @@ json full_document() {
   json& polls = document["cameras"]["clock_poll"];
   polls["calibrated_asymmetry_ms"] = 0.25;
   polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
+  document["cameras"]["led_clock"] = {{"interval_ms", 200},      {"first_ms", 1000},
+                                      {"last_ms", 1000},         {"step_ms", 1},
+                                      {"missed_probability", 0}, {"wrong_probability", 0},
+                                      {"skew_sigma_ppm", 20},    {"row_spread_share", 0}};
   document["pipelines"][0]["capture_alignment"] = "free_run";
   document["pipelines"][0]["host_sync"] = {
       {"program",
@@ -250,6 +254,7 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<PollDelays>();
   expect_all_members_written<ClockPoll>();
   expect_all_members_written<CalibrationError>();
+  expect_all_members_written<LedClockModel>();
   expect_all_members_written<FrameControlModel>();
   expect_all_members_written<BackendStamp>();
   expect_all_members_written<Cameras>();

@@ -21,6 +21,7 @@ struct Given {
   std::vector<DeviceSample> stamped;
   std::vector<PollSample> polls;
   std::vector<ClockAdjustment> adjustments;
+  std::vector<LedSample> sightings;
 };
 
 class Recorder final : public DeviceTimeEstimator {
@@ -39,6 +40,7 @@ class Recorder final : public DeviceTimeEstimator {
   void on_adjustment(const ClockAdjustment& adjustment) override {
     given_.adjustments.push_back(adjustment);
   }
+  void on_led_sighting(const LedSample& sighting) override { given_.sightings.push_back(sighting); }
 
  private:
   Given& given_;
@@ -68,11 +70,13 @@ TEST(Variants, PassEverythingOn) {
   EXPECT_FALSE(wrapped->relative());
   wrapped->on_poll({});
   wrapped->on_adjustment(step(1, 2, 3));
+  wrapped->on_led_sighting({});
   const std::vector<DeviceSample> two(2);
   wrapped->learn(two);
   wrapped->stamp({});
   EXPECT_EQ(given.polls.size(), 1U);
   EXPECT_EQ(given.adjustments.size(), 1U);
+  EXPECT_EQ(given.sightings.size(), 1U);
   EXPECT_EQ(given.learned.size(), 2U);
   EXPECT_EQ(given.stamped.size(), 1U);
 

@@ -2,6 +2,7 @@
 #ifndef SIMBENCH_TESTS_SIM_RIG_TEST_WORLD_H_
 #define SIMBENCH_TESTS_SIM_RIG_TEST_WORLD_H_
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -24,6 +25,10 @@ class KeptLists final : public RecordingSink {
     std::int64_t pulse;
     TrueTime at;
   };
+  struct Sighting {
+    LedSighting led;
+    std::size_t frame;  // the newest frame then
+  };
   void on_start(const RigLayout&) override {}
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
     frames.push_back({frame, *truth});
@@ -33,10 +38,14 @@ class KeptLists final : public RecordingSink {
   void on_poll(const DevicePoll& poll) override { polls.push_back(poll); }
   void on_exchange(std::uint32_t, const Exchange&) override {}
   void on_outcome(const SyncOutcome&) override {}
+  void on_led_sighting(const LedSighting& sighting) override {
+    sightings.push_back({sighting, frames.size() - 1});
+  }
 
   std::vector<Frame> frames;
   std::vector<Pulse> pulses;
   std::vector<DevicePoll> polls;
+  std::vector<Sighting> sightings;
 };
 
 // Runs `program` on every host from `warm_up` before true zero to the end of the capture.
