@@ -19,11 +19,13 @@
 // over the camera's stamps, which count through lost frames, and of the middle, which the sensor
 // stamp means. The published limits of quality (RMSE, R2, share of inliers) only warn; none here.
 //
-// Error: a step of 1 ms leaves each middle with 0.2 ms (two ends, uniform) and the line with
-// 0.2 ms * 2 / sqrt(n) at most at its ends; then the camera's clock where it is no line: wander,
-// most between two windows. A rolling shutter is not corrected, as in the published program: the
-// stamp is that of the row that sees the LEDs, up to half of the readout beside the frame's middle.
-// What the LED clock's own oscillator is wrong by, all cameras share.
+// Error: a step of 1 ms leaves each middle with 0.2 ms (two ends, uniform) and, if the frames meet
+// the steps in all phases, the line with 0.2 ms * 2 / sqrt(n) at most at its ends. At 30 fps they
+// meet them in three phases, and some of the 0.2 ms stays in all of a camera's stamps. Then the
+// camera's clock where it is no line: wander, most between two windows. A rolling shutter is not
+// corrected, as in the published program: the stamp is that of the row that sees the LEDs, up to
+// half of the readout beside the frame's middle. What the LED clock's own oscillator is wrong by,
+// all cameras share.
 //
 // Fallbacks: one sighting, or all at one stamp, give a line at the camera's own rate; where none is
 // within the threshold of the robust line, as of two that contradict each other, all are used.

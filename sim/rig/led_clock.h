@@ -24,8 +24,8 @@
 // Times count from the capture's start. Cost: some 20 ns a frame.
 // Source: docs/reference/capture_alignment.md section 5.
 //
-//   LedClock leds(scenario, seed, world.last_exposure());
-//   if (const auto lit = leds.read(frame, readout)) report(frame, lit->start, lit->end);
+//   LedClock leds(scenario, seed, camera_world.last_exposure());
+//   if (const auto lit = leds.read(frame, kReadout)) use(lit->start, lit->end);
 #ifndef SIMBENCH_SIM_RIG_LED_CLOCK_H_
 #define SIMBENCH_SIM_RIG_LED_CLOCK_H_
 

@@ -46,6 +46,7 @@ extern const Whatever adjustment, cameras, line, x, y, w, own_clock, key, master
 extern const std::size_t capacity, extra;
 extern const std::uint32_t sources, camera;
 extern std::vector<DeviceSample> frames;
+extern const std::vector<LedSample> sightings;
 extern std::vector<GlobalTime> global;
 extern Given<DeviceSample> sample, first;
 extern const Given<GatherFrame> frame;

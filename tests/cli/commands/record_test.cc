@@ -73,6 +73,11 @@ TEST_F(RecordCommand, AReplayOfAGenlockRigGivesTheNumbersOfTheRun) {
                             "--pipelines", "oracle,yoon2021_both"});
 }
 
+TEST_F(RecordCommand, AReplayHasTheSightingsOfAnLedClock) {
+  expect_replay_equals_run({"--scenario", "25cam_led_30fps", "--set", "/timeline/frames=40",
+                            "--pipelines", "rocsync_led.hardware_sync"});
+}
+
 // Without polls, two_way_poll would be the bare arrivals.
 TEST_F(RecordCommand, ARecordingWithoutPollsHasNoNumbersOfAPipelineThatNeedsThem) {
   const ProgramResult recorded =

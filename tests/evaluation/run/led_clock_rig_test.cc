@@ -24,8 +24,8 @@ Row scored_led_rig(std::vector<scenarios::Override> overrides) {
       .rows.front();
 }
 
-// Each middle is uniform over two ends, sigma 0.2 ms, of some 25 looks that a line averages.
-TEST(LedClockRig, AStepLeavesSomeHundredthsOfAMillisecond) {
+// Each middle is wrong by two ends, sigma 0.2 ms; a line averages some of it.
+TEST(LedClockRig, AStepLeavesLessThanItsOwnError) {
   const Row row = scored_led_rig({{"/cameras/led_clock/row_spread_share", "0"}});
   EXPECT_GT(row.evaluated_pulses, 100);
   EXPECT_GT(row.rmdv_ms.median, 0.01);

@@ -95,6 +95,7 @@ const std::vector<Golden>& goldens() {
        0xeb7612ce002dab47},
       {"18cam_6host_90fps_full_slave", "yoon2021_both", 8543, 0x4ccd0cbf2a66ed27,
        0x480a415c8edc0b9c},
+      {"25cam_led_30fps", "rocsync_led", 1286, 0xf183074e01d63c3d, 0xd3a18f63ae409ba8},
       {"3cam_1host_30fps", "free_running", 355, 0x7621b8b0d8390f02, 0xf6702f4f19a31d6b},
       {"6cam_2host_30fps", "yoon2021_both", 1496, 0x33f20be7b2cbccb, 0x31908e31ef937b02},
       {"6host_lan_day", "chrony", 22790, 0x8e2ca9f0df261acc, 0x6ae62dc86818a090},
