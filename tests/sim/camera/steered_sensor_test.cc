@@ -112,9 +112,11 @@ TEST(SteeredSensor, AnInsertedFrameExposesLongAndStretchesItsNeighbours) {
 }
 
 TEST(SteeredSensor, ALongExposureStretchesTheFrame) {
-  SteeredSensor steered = sensor(settings());
-  const std::vector<TrueTime> all = starts(steered, 5, std::chrono::milliseconds(40));
-  EXPECT_EQ(gap(all, 3), std::chrono::milliseconds(40) + settings().limits.granularity);
+  SteeredSensorSettings dark = settings();
+  dark.limits.exposure = std::chrono::milliseconds(40);
+  SteeredSensor steered = sensor(dark);
+  const std::vector<TrueTime> all = starts(steered, 5, dark.limits.exposure);
+  EXPECT_EQ(gap(all, 3), dark.limits.exposure + dark.limits.granularity);
 }
 
 TEST(SteeredSensor, MovesNothingThatIsUnderWay) {

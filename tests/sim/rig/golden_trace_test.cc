@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,9 +76,17 @@ Golden run_golden(const Golden& golden) {
     values.insert(given->second.begin(), given->second.end());
   }
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, values));
+  std::unique_ptr<CaptureAlignment> alignment;
+  if (const auto* steered = find_capture_alignment(pipeline.capture_alignment)) {
+    alignment = steered->make(check_parameters(steered->info.parameters, {}));
+  }
   KeptRecording recording;
-  const RecordingCost cost = make_simulation(scenario)->record(
-      {.seed = 1, .pipeline = pipeline.name, .host_sync = host_sync.get()}, recording);
+  const RecordingCost cost =
+      make_simulation(scenario)->record({.seed = 1,
+                                         .pipeline = pipeline.name,
+                                         .host_sync = host_sync.get(),
+                                         .capture_alignment = alignment.get()},
+                                        recording);
   return {golden.scenario, golden.pipeline, cost.events, cost.trace_hash,
           recording_hash(recording)};
 }
@@ -95,6 +104,14 @@ const std::vector<Golden>& goldens() {
        0xeb7612ce002dab47},
       {"18cam_6host_90fps_full_slave", "yoon2021_both", 8543, 0x4ccd0cbf2a66ed27,
        0x480a415c8edc0b9c},
+      {"18cam_6host_30fps_without_trigger", "phase_rate", 24576, 0xbb3a88081e4a7745,
+       0x24b3777f0ae5569a},
+      {"4oak_poe_30fps", "pid_frame_rate", 11870, 0xc307dcc6b519a3d9, 0xb6931be9838e63ca},
+      {"5phone_wifi_30fps", "libsoftwaresync", 1990, 0x664e06ade84d9fa9, 0x1135c2240108034d},
+      {"6cam_gige_ptp_60fps", "periodic_ptp", 17074, 0x72551668f222b139, 0x504abda48001c912},
+      {"8cam_raspberry_30fps", "rpi_sync", 129717, 0x2512bfdb78d7a74a, 0xa5933819563938ec},
+      {"leaderboard_without_cables", "align.rpi_sync", 24766, 0x6a2b6133b005c375,
+       0xc7a3378272c5e99a},
       {"25cam_led_30fps", "rocsync_led", 1286, 0xf183074e01d63c3d, 0xd3a18f63ae409ba8},
       {"3cam_1host_30fps", "free_running", 355, 0x7621b8b0d8390f02, 0xf6702f4f19a31d6b},
       {"6cam_2host_30fps", "yoon2021_both", 1496, 0x33f20be7b2cbccb, 0x31908e31ef937b02},

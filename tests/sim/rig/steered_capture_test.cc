@@ -115,7 +115,11 @@ TEST(SteeredCapture, NobodySteers) {
     EXPECT_TRUE(exposures.unusual_ms(camera).empty());
   }
   // Every frame has the pulse of the nearest exposure of camera 0.
-  for (const auto& [pulse, all] : exposures.by_pulse) EXPECT_LE(all.size(), 18U) << pulse;
+  for (const auto& [pulse, all] : exposures.by_pulse) {
+    if (pulse >= 0) {
+      EXPECT_LE(all.size(), 18U) << pulse;
+    }
+  }
 }
 
 TEST(SteeredCapture, TheLimitIsAGranule) {
