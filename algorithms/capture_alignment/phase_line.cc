@@ -7,6 +7,8 @@ namespace simbench {
 namespace {
 
 constexpr double kNoiseGain = 1.0 / 32;
+constexpr double kNoiseGainAtFirst = 0.25;
+constexpr std::size_t kFew = 8;
 constexpr double kManyNoises = 4;
 // Moves older than this, in frames, are in every frame that is still asked for.
 constexpr std::uint32_t kOld = 256;
@@ -37,7 +39,10 @@ void PhaseLine::add(std::uint32_t counter, HostTime exposed) {
   if (frames_ > 1) {
     const double distance_ns = static_cast<double>(error_ns) - line_.at(n);
     recent_ns_[frames_ % kRecent] = distance_ns;
-    noise_ns_ += (std::abs(distance_ns) - noise_ns_) * (frames_ < kOld / 8 ? 0.25 : kNoiseGain);
+    // What lies far off is a move that nobody said, not noise.
+    const double most_ns = frames_ < kFew ? std::abs(distance_ns) : kManyNoises * noise_ns_ + 1;
+    const double found_ns = std::min(std::abs(distance_ns), most_ns);
+    noise_ns_ += (found_ns - noise_ns_) * (frames_ < kOld / 8 ? kNoiseGainAtFirst : kNoiseGain);
   }
   fit_.push({.x = n, .y = error_ns});
   line_ = fit_.line();

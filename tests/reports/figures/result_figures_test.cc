@@ -152,7 +152,7 @@ TEST(BudgetFigureTest, ABarForEveryStageAndTheRemainder) {
   const Figure figure = budget_figure({budget, host_clock});
   EXPECT_EQ(figure.pipeline, "mine");
   const FigurePanel& amd = figure.panels.at(0);
-  ASSERT_THAT(amd.categories, SizeIs(evaluation::kStageCount + 1));
+  ASSERT_THAT(amd.categories, SizeIs(evaluation::budget_stages(budget).size() + 1));
   EXPECT_EQ(amd.categories[5], "host clock");
   EXPECT_THAT(amd.series.at(0).y, ElementsAre(0, 0, 0, 0, 0, 2, 0, 1));
   EXPECT_EQ(amd.series.at(2).y.at(5), 4);

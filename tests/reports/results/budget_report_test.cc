@@ -49,6 +49,16 @@ BudgetReport sample_report() {
           .budgets = {{budget, host_clock_sample()}}};
 }
 
+TEST(BudgetReport, ASteeredPipelineHasAPhaseAndAGranularity) {
+  BudgetReport report = sample_report();
+  EXPECT_THAT(plain(budget_document(report)), Not(HasSubstr("granularity")));
+  report.budgets.front().stages.is_steered = true;
+  const std::string text = plain(budget_document(report));
+  EXPECT_THAT(text, HasSubstr("phase"));
+  EXPECT_THAT(text, HasSubstr("granularity"));
+  EXPECT_THAT(text, Not(HasSubstr("trigger")));
+}
+
 TEST(BudgetReport, ALineForEveryStageItsShareAndTheTotal) {
   const std::string text = plain(budget_document(sample_report()));
   EXPECT_THAT(text, HasSubstr("Error budget of mine in sample, 1 seed (1)"));
