@@ -21,9 +21,8 @@
 //
 // Complexity a frame and memory: those of the switching hull. Source: the same.
 //
-//   FrameClock clock;
-//   const ExposedFrame frame = clock.at(*co_await camera.next_frame(deadline));
-//   Nanoseconds phase = frame.exposed.time_since_epoch() % period;
+//   FrameClock frame_clock;
+//   const HostTime exposed_at = frame_clock.at(FrameArrival{}).exposed;
 #ifndef SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_FRAME_CLOCK_H_
 #define SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_FRAME_CLOCK_H_
 

@@ -15,9 +15,9 @@
 // Units: nanoseconds. Cost: O(1) a frame. Source: least squares;
 // docs/reference/capture_alignment.md section 10.
 //
-//   PhaseLine line(from_ms(33), 300);
-//   line.add(counter, exposed);
-//   const double late_ns = line.error_ns(counter + 5);
+//   PhaseLine course(from_ms(33), 300);
+//   course.add(7, HostTime(from_ms(231.2)));
+//   const double late_ns = course.error_ns(12);
 #ifndef SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
 #define SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
 

@@ -14,7 +14,7 @@
 // A control that a camera lacks, a grid that its rate cannot reach: report it as not aligned, with
 // a message that says what would help. Never throw for it.
 //
-//   class Nothing : public CaptureAlignment {
+//   class StandsBy : public CaptureAlignment {
 //     Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }
 //     Task<void> run_slave(Host&, PeerId) override { co_return; }
 //   };

@@ -3,11 +3,11 @@
 // A camera without a trigger cable runs free: its sensor begins a frame when the one before has had
 // its length. A program moves the exposures by changing lengths, as far as the camera lets it:
 //
-//   kAdjustFrame   one frame is longer or shorter, the next ones are as before
-//   kInsertFrame   one frame of another length, with an exposure as long as that length allows;
-//                  the picture is another one: brighter or darker
-//   kFrameLength   all frames from then on have another length
-//   kStartAt       the camera stops, and its next exposure begins at a time
+//  - kAdjustFrame: one frame is longer or shorter, the next ones are as before;
+//  - kInsertFrame: one frame of another length, with an exposure as long as that length allows: the
+//    picture is brighter or darker;
+//  - kFrameLength: all frames from then on have another length;
+//  - kStartAt: the camera stops, and its next exposure begins at a time.
 //
 // Contract
 //  - A length is from the begin of one readout to that of the next, as the camera's own oscillator

@@ -19,9 +19,11 @@
 // Times are true times since the cameras' start. Cost: O(log commands) a frame.
 // Source: docs/reference/capture_alignment.md.
 //
-//   SteeredSensor sensor(settings, OscillatorModel(20e-6), RandomStream(1, "jitter", 0), start);
-//   sensor.latch({.kind = FrameControlKind::kFrameLength, .length = from_ms(33)}, at, made_until);
-//   while (sensor.next_exposure() < until) expose(sensor.expose(from_ms(8)));
+//   SteeredSensor sensor({}, OscillatorModel(20e-6), RandomStream(1, "jitter", 0), TrueTime{},
+//                        TrueTime{});
+//   sensor.latch({.kind = FrameControlKind::kFrameLength, .length = from_ms(33)}, TrueTime{},
+//                TrueTime{});
+//   const Exposure next = sensor.expose(from_ms(8));
 #ifndef SIMBENCH_SIM_CAMERA_STEERED_SENSOR_H_
 #define SIMBENCH_SIM_CAMERA_STEERED_SENSOR_H_
 

@@ -2,7 +2,8 @@
 // it is asked to; and where their commands to cameras go.
 //
 //   FrameSupply supply;
-//   supply.connect([&] { capture.catch_up(); }, [&] { expect_frame(); }, steer_camera);
+//   supply.connect([&] { capture.catch_up(); }, [&] { expect_frame(); },
+//                  [&](std::uint32_t, const FrameCommand&) {});
 //   supply.catch_up();
 #ifndef SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
 #define SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_

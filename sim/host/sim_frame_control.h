@@ -10,7 +10,7 @@
 // Frames come as they are delivered, through the rig (FrameSupply): at the instant of the delivery,
 // while a coroutine waits.
 //
-//   SimFrameControl control(host, 3, scenario.cameras, frame_length);
+//   SimFrameControl control(host, 3, scenario);
 //   const FrameControlReply reply = co_await control.adjust_frame(from_ms(2));
 #ifndef SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
 #define SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_

@@ -10,9 +10,9 @@
 // Times are the middles of the exposures; those of the reference camera are added in order.
 // Cost: O(log) of the pulses that are kept, the last 256.
 //
-//   ReferencePulses reference(first_due, from_ms(33));
-//   reference.add(middle_of_reference);
-//   frame.pulse = reference.pulse_of(middle);
+//   ReferencePulses reference(TrueTime{}, from_ms(33));
+//   reference.add(TrueTime(from_ms(330)));
+//   const std::int64_t pulse = reference.pulse_of(TrueTime(from_ms(331)));   // 10
 #ifndef SIMBENCH_SIM_RIG_REFERENCE_PULSES_H_
 #define SIMBENCH_SIM_RIG_REFERENCE_PULSES_H_
 

@@ -85,8 +85,8 @@ class Scripted : public CaptureAlignment {
   }
 };
 
-RecordingCost record(const scenarios::Scenario& scenario, CaptureAlignment* alignment,
-                     RecordingSink& sink, std::uint64_t seed = 1) {
+RecordingCost record_steered(const scenarios::Scenario& scenario, CaptureAlignment* alignment,
+                             RecordingSink& sink, std::uint64_t seed = 1) {
   const HostSyncEntry* entry = find_host_sync("oracle");
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, {}));
   return make_simulation(scenario)->record({.seed = seed,
@@ -103,13 +103,13 @@ std::unique_ptr<CaptureAlignment> registered(const std::string& name) {
 
 TEST(SteeredCapture, WithoutAnAlignmentTheTriggerExposes) {
   Exposures exposures;
-  record(short_rig(), nullptr, exposures);
+  record_steered(short_rig(), nullptr, exposures);
   EXPECT_LT(exposures.worst_spread_ms(90), 0.005);
 }
 
 TEST(SteeredCapture, NobodySteers) {
   Exposures exposures;
-  record(short_rig(), registered("free_run").get(), exposures);
+  record_steered(short_rig(), registered("free_run").get(), exposures);
   EXPECT_GT(exposures.worst_spread_ms(90), 10);
   for (std::size_t camera = 0; camera < exposures.middles.size(); ++camera) {
     EXPECT_TRUE(exposures.unusual_ms(camera).empty());
@@ -124,7 +124,7 @@ TEST(SteeredCapture, NobodySteers) {
 
 TEST(SteeredCapture, TheLimitIsAGranule) {
   Exposures exposures;
-  record(short_rig(), registered("oracle").get(), exposures);
+  record_steered(short_rig(), registered("oracle").get(), exposures);
   EXPECT_LE(exposures.worst_spread_ms(90), 0.01001);
 }
 
@@ -142,7 +142,7 @@ class LongerFrame final : public Scripted {
 TEST(SteeredCapture, OneFrameOfEachCameraIsLonger) {
   Exposures exposures;
   LongerFrame longer;
-  record(short_rig(), &longer, exposures);
+  record_steered(short_rig(), &longer, exposures);
   for (std::size_t camera = 0; camera < exposures.middles.size(); ++camera) {
     const std::vector<double> unusual = exposures.unusual_ms(camera);
     ASSERT_EQ(unusual.size(), 1U) << "camera " << camera;
@@ -155,7 +155,7 @@ TEST(SteeredCapture, LostControlsChangeNothing) {
   scenario.cameras.frame_control->loss_probability = 1;
   Exposures exposures;
   LongerFrame longer;
-  record(scenario, &longer, exposures);
+  record_steered(scenario, &longer, exposures);
   EXPECT_TRUE(exposures.unusual_ms(3).empty());
 }
 
@@ -178,7 +178,7 @@ TEST(SteeredCapture, WhatACameraCannotDoIsRefusedAndChangesNothing) {
   scenario.cameras.frame_control->insert_frame = false;
   Exposures exposures;
   Refused refused;
-  record(scenario, &refused, exposures);
+  record_steered(scenario, &refused, exposures);
   ASSERT_EQ(exposures.reports.size(), 18U);
   EXPECT_EQ(exposures.reports.front().message,
             "found a frame of 1.000000 ms, allowed: 17.000000 ms to 66.000000 ms|the camera has no "
@@ -204,7 +204,7 @@ TEST(SteeredCapture, CamerasStartAtTheirHostsTime) {
   scenario.cameras.cameras_per_host = 1;
   Exposures exposures;
   StartedAtOnce started;
-  record(scenario, &started, exposures);
+  record_steered(scenario, &started, exposures);
   // A camera starts whole frames after the first one.
   EXPECT_LT(exposures.worst_spread_ms(130), 0.5);
 }
@@ -212,15 +212,15 @@ TEST(SteeredCapture, CamerasStartAtTheirHostsTime) {
 TEST(SteeredCapture, TheSameSeedGivesTheSameWorld) {
   Exposures first;
   Exposures second;
-  const RecordingCost a = record(short_rig(), registered("phase_rate").get(), first, 7);
-  const RecordingCost b = record(short_rig(), registered("phase_rate").get(), second, 7);
+  const RecordingCost a = record_steered(short_rig(), registered("phase_rate").get(), first, 7);
+  const RecordingCost b = record_steered(short_rig(), registered("phase_rate").get(), second, 7);
   EXPECT_EQ(a.trace_hash, b.trace_hash);
   EXPECT_EQ(first.middles, second.middles);
 }
 
 TEST(SteeredCapture, PhaseRateAlignsWithOneDisturbedFrame) {
   Exposures exposures;
-  record(short_rig(), registered("phase_rate").get(), exposures);
+  record_steered(short_rig(), registered("phase_rate").get(), exposures);
   EXPECT_LT(exposures.worst_spread_ms(130), 0.1);
   for (std::size_t camera = 0; camera < exposures.middles.size(); ++camera) {
     EXPECT_LE(exposures.unusual_ms(camera).size(), 3U) << "camera " << camera;
