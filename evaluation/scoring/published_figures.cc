@@ -27,6 +27,22 @@ FigureVerdict verdict_of_bound(const Percentile& kept) {
 
 }  // namespace
 
+std::string_view verdict_word(FigureVerdict verdict) {
+  switch (verdict) {
+    case FigureVerdict::kInside:
+      return "inside";
+    case FigureVerdict::kOutside:
+      return "outside";
+    case FigureVerdict::kHolds:
+      return "holds";
+    case FigureVerdict::kFails:
+      return "fails";
+    case FigureVerdict::kTooFewSeeds:
+      break;
+  }
+  return "";
+}
+
 FigureComparison compare_figure(const scenarios::PublishedFigure& figure, const Row& row) {
   const std::vector<double>& values = metric(figure.metric).series(row).values;
   FigureComparison comparison{.figure = figure,

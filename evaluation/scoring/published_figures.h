@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
@@ -32,6 +33,9 @@ enum class FigureVerdict : std::uint8_t {
   kFails,
   kTooFewSeeds,
 };
+
+// "inside", "outside", "holds", "fails"; "" if the seeds are too few to tell.
+std::string_view verdict_word(FigureVerdict verdict);
 
 struct FigureComparison {
   scenarios::PublishedFigure figure;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/scoring/metrics.h"
@@ -22,19 +23,8 @@ const Metric& metric_of(const FigureComparison& compared) {
 }
 
 std::string figure_verdict_text(FigureVerdict verdict) {
-  switch (verdict) {
-    case FigureVerdict::kInside:
-      return "inside";
-    case FigureVerdict::kOutside:
-      return "outside";
-    case FigureVerdict::kHolds:
-      return "holds";
-    case FigureVerdict::kFails:
-      return "fails";
-    case FigureVerdict::kTooFewSeeds:
-      break;
-  }
-  return "too few seeds";
+  const std::string_view word = evaluation::verdict_word(verdict);
+  return std::string(word.empty() ? "too few seeds" : word);
 }
 
 // "at most 0.250 ms".

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "evaluation/scoring/metrics.h"
 
@@ -9,25 +10,8 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::FigureComparison;
-using evaluation::FigureVerdict;
 
 constexpr const char* kFigures = "published_figures";
-
-Json figure_verdict_json(FigureVerdict verdict) {
-  switch (verdict) {
-    case FigureVerdict::kInside:
-      return "inside";
-    case FigureVerdict::kOutside:
-      return "outside";
-    case FigureVerdict::kHolds:
-      return "holds";
-    case FigureVerdict::kFails:
-      return "fails";
-    case FigureVerdict::kTooFewSeeds:
-      break;
-  }
-  return nullptr;
-}
 
 Json published_figure_json(const FigureComparison& compared) {
   const scenarios::PublishedFigure& figure = compared.figure;
@@ -43,7 +27,8 @@ Json published_figure_json(const FigureComparison& compared) {
     entry["kept_percent"] = compared.kept.percent;
     entry["kept_percent_interval"] = Json::array({compared.kept.low, compared.kept.high});
   }
-  entry["verdict"] = figure_verdict_json(compared.verdict);
+  const std::string_view verdict = evaluation::verdict_word(compared.verdict);
+  entry["verdict"] = verdict.empty() ? Json() : Json(verdict);
   return entry;
 }
 

@@ -107,6 +107,7 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
                           evaluation::stage_name(budget, static_cast<evaluation::Stage>(stage)),
                           100 * share);
   }
+  if (shares.empty()) return "";
   std::string text = fmt::format("What limits it (error budget over {}): {}.",
                                  counted(parts.total.values.size(), "seed"), shares);
   const auto most = std::ranges::max_element(parts.alone, {}, &evaluation::BudgetPart::mean);

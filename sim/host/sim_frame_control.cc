@@ -3,7 +3,6 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/ports/assert.h"
 #include "sim/engine/random.h"
 #include "sim/host/sim_host.h"
 
@@ -11,7 +10,6 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kControl("camera: control of its frames");
-constexpr std::size_t kFramesOfCamera = 1024;
 constexpr Nanoseconds kBeforeStart = std::chrono::milliseconds(10);
 
 RandomStream control_draws(std::uint64_t run_seed, std::uint32_t camera, std::uint64_t number) {
@@ -38,28 +36,16 @@ SimFrameControl::SimFrameControl(SimHost& host, std::uint32_t camera,
       model_(*scenario.cameras.frame_control),
       limits_(frame_limits(scenario)),
       steady_length_(limits_.nearest(limits_.frame_length)),
-      delivered_(host.world().context, host.name("next frame of a camera")) {}
+      feed_(host) {}
 
 Task<std::optional<FrameArrival>> SimFrameControl::next_frame(SteadyTime deadline) {
-  SIMBENCH_ASSERT(!delivered_.waiting(), "one wait at a time on a camera's frames");
   host_.world().frames.open();
-  for (;;) {
-    host_.world().frames.catch_up();
-    if (!frames_.empty()) break;
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    host_.world().frames.expect();
-    co_await delivered_.wait(host_.next_look(deadline));
-  }
-  const FrameArrival frame = frames_.front();
-  frames_.pop_front();
-  co_return frame;
+  return feed_.next(deadline);
 }
 
 void SimFrameControl::push(FrameArrival frame) {
   frame.reading = std::exchange(reading_, std::nullopt);
-  if (frames_.size() == kFramesOfCamera) frames_.pop_front();
-  frames_.push_back(frame);
-  delivered_.notify();
+  feed_.push(frame);
 }
 
 FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value,

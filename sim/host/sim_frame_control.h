@@ -16,17 +16,14 @@
 #define SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 #include "algorithms/ports/frame_control.h"
 #include "scenarios/scenario.h"
 #include "sim/camera/steered_sensor.h"
-#include "sim/engine/virtual_executor.h"
+#include "sim/host/sim_host.h"
 
 namespace simbench::sim {
-
-class SimHost;
 
 // The limits of the cameras of a scenario, which has frame_control.
 FrameControlLimits frame_limits(const scenarios::Scenario& scenario);
@@ -44,10 +41,11 @@ class SimFrameControl final : public FrameControl {
   Task<FrameControlReply> set_frame_length(Nanoseconds length) override;
   Task<FrameControlReply> start_at(HostTime at) override;
 
+  // The camera's own queue.
   void push(FrameArrival frame);
   // The next frame brings it along.
   void read_clock(const CameraClockReading& reading) { reading_ = reading; }
-  bool is_awaited() const { return delivered_.waiting(); }
+  bool is_awaited() const { return feed_.is_awaited(); }
 
  private:
   FrameControlReply send(FrameControlKind kind, Nanoseconds value, Nanoseconds length);
@@ -59,8 +57,7 @@ class SimFrameControl final : public FrameControl {
   Nanoseconds steady_length_;  // of the frames, as the last control set it
   std::uint64_t sent_ = 0;
   std::optional<CameraClockReading> reading_;
-  WaitPoint delivered_;
-  std::deque<FrameArrival> frames_;
+  SimFrameFeed feed_;
 };
 
 }  // namespace simbench::sim

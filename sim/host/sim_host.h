@@ -65,7 +65,8 @@ class SimFrameControl;
 class SimHost;
 class SimMulticast;
 
-// The frames of the host's cameras for its programs: a queue that the rig fills.
+// The frames of the host's cameras, or of one of them, for its programs: a queue that the rig
+// fills.
 //
 // next() returns at the instant of a frame's delivery, as the stamps of a frame already contain all
 // delays. The last 1024 frames that no program has taken are kept. A feed exists only from the
