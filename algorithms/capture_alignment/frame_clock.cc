@@ -42,7 +42,9 @@ ExposedFrame FrameClock::at(const FrameArrival& frame) {
   return {.counter = frame.counter,
           .exposed = frame.arrival + (exposed - frame.arrival_steady),
           .exposed_steady = exposed,
-          .arrival_steady = frame.arrival_steady};
+          .arrival_steady = frame.arrival_steady,
+          .arrival = frame.arrival,
+          .exposure = Microseconds(frame.exposure_us)};
 }
 
 }  // namespace simbench

@@ -41,6 +41,8 @@ struct ExposedFrame {
   HostTime exposed{};
   SteadyTime exposed_steady{};
   SteadyTime arrival_steady{};
+  HostTime arrival{};
+  Nanoseconds exposure{};  // its time
 };
 
 class FrameClock {

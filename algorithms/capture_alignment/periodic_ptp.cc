@@ -44,21 +44,10 @@ Nanoseconds grid_correction(const SteeredCamera& camera, Nanoseconds error, Nano
   return is_later ? std::min(later, longer) : -std::min(earlier, shorter);
 }
 
-std::string in_ms(Nanoseconds time) { return std::to_string(to_ms(time)) + " ms"; }
-
-// Why no frame of the camera can follow the grid, empty if some can.
-std::string unreachable(const SteeredCamera& camera, Nanoseconds period) {
-  const Nanoseconds shortest = camera.shortest();
-  const Nanoseconds longest = camera.longest();
-  if (period >= shortest && period <= longest && shortest < longest) return "";
-  return "found a period of " + in_ms(period) + ", allowed: from " + in_ms(shortest) + " to " +
-         in_ms(longest) + "; choose another rate or exposure";
-}
-
 Task<void> follow_grid(Host& host, FrameControl& control, Nanoseconds tolerance) {
   SteeredCamera camera(host, control);
   const Nanoseconds period = camera.limits().frame_length;
-  if (std::string why = unreachable(camera, period); !why.empty()) {
+  if (std::string why = camera.unreachable(period); !why.empty()) {
     camera.report(false, std::move(why));
     co_return;
   }

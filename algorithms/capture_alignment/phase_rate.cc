@@ -26,9 +26,8 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/capture_alignment/frame_clock.h"
 #include "algorithms/capture_alignment/phase_line.h"
-#include "algorithms/host_sync/join.h"
+#include "algorithms/capture_alignment/steered_camera.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -47,11 +46,10 @@ struct PhaseRateSettings {
 // The steering of one camera.
 class PhaseRateCamera {
  public:
-  PhaseRateCamera(Host& host, FrameControl& camera, const PhaseRateSettings& settings)
-      : host_(host),
-        camera_(camera),
+  PhaseRateCamera(Host& host, FrameControl& control, const PhaseRateSettings& settings)
+      : camera_(host, control),
         settings_(settings),
-        limits_(camera.limits()),
+        limits_(control.limits()),
         line_(limits_.frame_length, settings.window),
         insert_gain_(settings.insert_gain) {}
 
@@ -64,51 +62,43 @@ class PhaseRateCamera {
     std::int64_t periods = 0;  // of the grid that are skipped
   };
 
-  bool is_usable(const FrameArrival& frame) const;
-  void observe(const FrameArrival& frame);
-  std::uint32_t next_effect(const FrameArrival& frame) const;
+  bool is_usable(const ExposedFrame& frame) const;
+  bool add(const ExposedFrame& frame);
+  std::uint32_t next_effect(const ExposedFrame& frame) const;
   bool only_inserts() const;
+  double band_ns() const;
   // Moves below this, a hundredth of a frame, are part of the camera's course.
   double large_ns() const {
     return std::max(to_ns(limits_.frame_length) / 100, 20 * to_ns(limits_.granularity));
   }
   Correction exact(double error_ns) const;
   Correction inserted(double error_ns) const;
-  Task<void> correct(std::uint32_t from, double error_ns);
-  Task<FrameControlReply> move(Nanoseconds by);
+  Task<bool> correct(std::uint32_t from, double error_ns);
+  Task<bool> move(Nanoseconds by);
   void learn_gain();
   void report();
 
-  Host& host_;
-  FrameControl& camera_;
+  SteeredCamera camera_;
   PhaseRateSettings settings_;
   FrameControlLimits limits_;
-  FrameClock clock_;
   PhaseLine line_;
   std::uint32_t quiet_until_ = 0;  // no control before this frame
   bool has_frames_ = false;
-  bool has_begun_ = false;  // with a first correction
   bool resets_length_ = false;
-  HostTime exposed_{};
   double insert_gain_;
   bool knows_gain_ = false;
   Nanoseconds inserted_{};       // by which the last inserted frame was longer
   double before_insert_ns_ = 0;  // the error without it
-  std::uint32_t controls_ = 0;
-  bool is_aligned_ = false;
-  bool is_refused_ = false;
 };
 
 // Inserted frames have another exposure, and another middle.
-bool PhaseRateCamera::is_usable(const FrameArrival& frame) const {
-  const Nanoseconds exposure = Microseconds(frame.exposure_us);
-  return exposure < limits_.exposure + (limits_.frame_length - limits_.exposure) / 2;
+bool PhaseRateCamera::is_usable(const ExposedFrame& frame) const {
+  return frame.exposure < limits_.exposure + (limits_.frame_length - limits_.exposure) / 2;
 }
 
 // The first frame whose exposure a control that is sent now moves.
-std::uint32_t PhaseRateCamera::next_effect(const FrameArrival& frame) const {
-  const HostTime now = frame.arrival;
-  const std::int64_t since = (now - exposed_ - limits_.exposure / 2).count();
+std::uint32_t PhaseRateCamera::next_effect(const ExposedFrame& frame) const {
+  const std::int64_t since = (frame.arrival - frame.exposed - limits_.exposure / 2).count();
   const std::int64_t in_progress =
       std::max<std::int64_t>(0, floor_div(since, limits_.frame_length.count()));
   return frame.counter + static_cast<std::uint32_t>(in_progress) + limits_.latency_frames + 1;
@@ -119,13 +109,19 @@ bool PhaseRateCamera::only_inserts() const {
          !limits_.allows(FrameControlKind::kFrameLength);
 }
 
+// Errors below this are left.
+double PhaseRateCamera::band_ns() const {
+  return only_inserts() ? 2 * to_ns(settings_.insert_band)
+                        : settings_.dead_band_granules * to_ns(limits_.granularity);
+}
+
 // One frame that is shorter if it can be, else one that is longer.
 PhaseRateCamera::Correction PhaseRateCamera::exact(double error_ns) const {
-  const Nanoseconds usual = limits_.nearest(limits_.frame_length);
+  const Nanoseconds usual = camera_.length();
   const Nanoseconds wanted = usual - from_ns(error_ns);
-  const bool can_be =
-      wanted >= std::max(limits_.shortest, limits_.exposure) && wanted <= limits_.longest;
-  if (can_be) return {.by = limits_.nearest(wanted) - usual};
+  if (wanted >= camera_.shortest() && wanted <= camera_.longest()) {
+    return {.by = limits_.nearest(wanted) - usual};
+  }
   const std::int64_t periods = error_ns > 0 ? 1 : 0;
   const Nanoseconds later = from_ns(-error_ns) + periods * limits_.frame_length;
   return {.by = limits_.nearest(usual + later) - usual, .periods = periods};
@@ -133,61 +129,43 @@ PhaseRateCamera::Correction PhaseRateCamera::exact(double error_ns) const {
 
 // Later by at least what the shortest inserted frame moves.
 PhaseRateCamera::Correction PhaseRateCamera::inserted(double error_ns) const {
-  const double slope = line_.slope_ns();
-  const double drift_ns = slope * to_ns(settings_.horizon) / to_ns(limits_.frame_length);
-  const double band_ns = to_ns(settings_.insert_band);
-  const double goal_ns = -std::clamp(drift_ns / 2, -band_ns, band_ns);
   const double period_ns = to_ns(limits_.frame_length);
-  const double least_ns =
-      std::max(0.0, to_ns(limits_.shortest - limits_.nearest(limits_.frame_length))) * insert_gain_;
-  double later_ns = goal_ns - error_ns;
-  std::int64_t periods = 0;
-  while (later_ns < least_ns) {
-    later_ns += period_ns;
-    ++periods;
-  }
-  return {.by = from_ns(later_ns), .periods = periods};
+  const double drift_ns = line_.slope_ns() * to_ns(settings_.horizon) / period_ns;
+  const double most_ns = to_ns(settings_.insert_band);
+  const double goal_ns = -std::clamp(drift_ns / 2, -most_ns, most_ns);
+  const double least_ns = std::max(0.0, to_ns(limits_.shortest - camera_.length())) * insert_gain_;
+  const double missing_ns = least_ns - (goal_ns - error_ns);
+  const double periods = std::max(0.0, std::ceil(missing_ns / period_ns));
+  return {.by = from_ns(goal_ns - error_ns + periods * period_ns),
+          .periods = static_cast<std::int64_t>(periods)};
 }
 
-Task<FrameControlReply> PhaseRateCamera::move(Nanoseconds by) {
-  const Nanoseconds usual = limits_.nearest(limits_.frame_length);
-  if (limits_.allows(FrameControlKind::kAdjustFrame)) {
-    FrameControlReply reply = co_await camera_.adjust_frame(by);
-    co_return reply;
-  }
+Task<bool> PhaseRateCamera::move(Nanoseconds by) {
+  if (limits_.allows(FrameControlKind::kAdjustFrame)) return camera_.adjust_frame(by);
   if (limits_.allows(FrameControlKind::kFrameLength)) {
     resets_length_ = true;
-    FrameControlReply reply = co_await camera_.set_frame_length(usual + by);
-    co_return reply;
+    return camera_.set_frame_length(camera_.length() + by);
   }
   inserted_ = from_ns(to_ns(by) / insert_gain_);
-  FrameControlReply reply = co_await camera_.insert_frame(usual + inserted_);
-  co_return reply;
+  return camera_.insert_frame(camera_.length() + inserted_);
 }
 
-Task<void> PhaseRateCamera::correct(std::uint32_t from, double error_ns) {
+// False if the camera refuses.
+Task<bool> PhaseRateCamera::correct(std::uint32_t from, double error_ns) {
   const Correction correction = only_inserts() ? inserted(error_ns) : exact(error_ns);
-  if (correction.by.count() == 0) co_return;
+  if (correction.by.count() == 0) co_return true;
   before_insert_ns_ =
       error_ns - static_cast<double>(correction.periods) * to_ns(limits_.frame_length);
-  const FrameControlReply reply = co_await move(correction.by);
-  if (!reply.is_accepted()) {
-    is_refused_ = true;
-    host_.report_alignment({.camera = camera_.camera(),
-                            .aligned = false,
-                            .controls = controls_,
-                            .message = "phase_rate: " + reply.refused});
-    co_return;
-  }
-  ++controls_;
+  const bool is_taken = co_await move(correction.by);
+  if (!is_taken) co_return false;
   line_.move(from, correction.by);
   line_.shift_grid(correction.periods);
   // A large move may come a frame earlier or later than foretold: those frames are of no use, and
   // nothing is known until they are over. A small one is in the line at once.
-  if (std::abs(to_ns(correction.by)) <= large_ns()) co_return;
+  if (std::abs(to_ns(correction.by)) <= large_ns()) co_return true;
   quiet_until_ = from + 3;
   line_.restart();
-  has_begun_ = true;
+  co_return true;
 }
 
 // From the first frames after an inserted one.
@@ -202,68 +180,49 @@ void PhaseRateCamera::learn_gain() {
 
 void PhaseRateCamera::report() {
   const double error_ns = std::abs(line_.error_ns(quiet_until_));
-  const bool is_aligned = has_begun_ && error_ns < to_ns(settings_.tolerance);
-  if (is_aligned == is_aligned_) return;
-  is_aligned_ = is_aligned;
-  host_.report_alignment({.camera = camera_.camera(),
-                          .aligned = is_aligned,
-                          .controls = controls_,
-                          .message = is_aligned ? "" : "phase_rate: it has left the grid"});
+  const bool is_aligned = error_ns < std::max(to_ns(settings_.tolerance), 2 * band_ns());
+  camera_.report(is_aligned, is_aligned ? "" : "on its way to the grid");
+}
+
+// Adds the frame to the line; false while too little is known for a control.
+bool PhaseRateCamera::add(const ExposedFrame& frame) {
+  if (!has_frames_) quiet_until_ = frame.counter + settings_.learn_frames;
+  const bool is_after_move = has_frames_ && line_.frames() == 0;
+  has_frames_ = true;
+  if (is_after_move && frame.counter < quiet_until_) return false;
+  line_.add(frame.counter, frame.exposed);
+  if (line_.is_surprised(large_ns())) line_.restart();
+  return frame.counter >= quiet_until_ && line_.frames() >= settings_.learn_frames;
 }
 
 Task<void> PhaseRateCamera::run() {
-  while (!is_refused_) {
-    const SteadyTime deadline = host_.steady_clock().now() + kIdle;
-    const std::optional<FrameArrival> frame = co_await camera_.next_frame(deadline);
-    if (!frame || !is_usable(*frame)) continue;
+  std::string why = only_inserts() ? "" : camera_.unreachable(limits_.frame_length);
+  if (!why.empty()) {
+    camera_.report(false, std::move(why));
+    co_return;
+  }
+  while (true) {
+    const ExposedFrame frame = co_await camera_.next_frame();
+    if (!is_usable(frame)) continue;
     if (resets_length_) {
       resets_length_ = false;
-      co_await camera_.set_frame_length(limits_.nearest(limits_.frame_length));
+      co_await camera_.set_frame_length(camera_.length());
     }
-    exposed_ = clock_.at(*frame).exposed;
-    if (!has_frames_) quiet_until_ = frame->counter + settings_.learn_frames;
-    has_frames_ = true;
-    if (has_begun_ && frame->counter < quiet_until_ && line_.frames() == 0) continue;
-    line_.add(frame->counter, exposed_);
-    if (line_.is_surprised(large_ns())) line_.restart();
-    const bool is_ready = line_.frames() >= settings_.learn_frames;
-    if (frame->counter < quiet_until_ || !is_ready) continue;
+    if (!add(frame)) continue;
     learn_gain();
     report();
-    const std::uint32_t from = next_effect(*frame);
+    const std::uint32_t from = next_effect(frame);
     const double error_ns = line_.error_ns(from);
-    const double band_ns = only_inserts()
-                               ? to_ns(settings_.insert_band) * 2
-                               : settings_.dead_band_granules * to_ns(limits_.granularity);
-    if (std::abs(error_ns) <= band_ns) continue;
-    co_await correct(from, error_ns);
+    if (std::abs(error_ns) <= band_ns()) continue;
+    const bool is_taken = co_await correct(from, error_ns);
+    if (!is_taken) co_return;
   }
 }
 
-Task<void> steer_camera(Host& host, FrameControl& camera, PhaseRateSettings settings) {
-  PhaseRateCamera steering(host, camera, settings);
+Task<void> steer_by_line(Host& host, FrameControl& control, PhaseRateSettings settings) {
+  PhaseRateCamera steering(host, control, settings);
   co_await steering.run();
 }
-
-class PhaseRate final : public CaptureAlignment {
- public:
-  explicit PhaseRate(PhaseRateSettings settings) : settings_(settings) {}
-
-  Task<void> run_master(Host& host, std::vector<PeerId> /*slaves*/) override { return run(host); }
-  Task<void> run_slave(Host& host, PeerId /*master*/) override { return run(host); }
-
- private:
-  Task<void> run(Host& host) {
-    std::vector<Task<void>> cameras;
-    cameras.reserve(host.frame_controls().size());
-    for (FrameControl* const camera : host.frame_controls()) {
-      cameras.push_back(steer_camera(host, *camera, settings_));
-    }
-    co_await join_all(std::move(cameras));
-  }
-
-  PhaseRateSettings settings_;
-};
 
 CaptureAlignmentEntry phase_rate() {
   const PhaseRateSettings defaults;
@@ -298,7 +257,9 @@ CaptureAlignmentEntry phase_rate() {
     settings.insert_band = from_ms(parameters.number("insert_band_ms"));
     settings.insert_gain = parameters.number("insert_gain");
     settings.horizon = from_seconds(parameters.number("horizon_s"));
-    return std::make_unique<PhaseRate>(settings);
+    return std::make_unique<EachCamera>([settings](Host& host, FrameControl& control) {
+      return steer_by_line(host, control, settings);
+    });
   };
   return entry;
 }

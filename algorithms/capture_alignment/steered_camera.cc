@@ -29,6 +29,13 @@ Nanoseconds SteeredCamera::longest() const {
   return Nanoseconds(step * floor_div(limits().longest.count(), step));
 }
 
+std::string SteeredCamera::unreachable(Nanoseconds period) const {
+  if (period >= shortest() && period <= longest() && shortest() < longest()) return "";
+  const auto in_ms = [](Nanoseconds time) { return std::to_string(to_ms(time)) + " ms"; };
+  return "found a period of " + in_ms(period) + ", allowed: from " + in_ms(shortest()) + " to " +
+         in_ms(longest()) + "; choose another rate or exposure";
+}
+
 Task<ExposedFrame> SteeredCamera::next_frame() {
   while (true) {
     const std::optional<FrameArrival> frame =

@@ -51,6 +51,8 @@ class SteeredCamera {
   Nanoseconds length() const;
   Nanoseconds shortest() const;
   Nanoseconds longest() const;
+  // Why no frame of it can follow a grid of that period, with what would help; empty if some can.
+  std::string unreachable(Nanoseconds period) const;
 
   Task<ExposedFrame> next_frame();
   bool is_settled(const ExposedFrame& frame) const;
