@@ -86,8 +86,11 @@ std::vector<AlignmentScores::Pulse> AlignmentScores::pulses_of_reference() const
                       .greatest_ns = frame.mid_ns});
   }
   std::ranges::stable_sort(pulses, {}, &Pulse::pulse);
-  const auto again = std::ranges::unique(pulses, {}, &Pulse::pulse);
-  pulses.erase(again.begin(), again.end());
+  // Not std::ranges::unique, whose result clang 14 cannot take apart.
+  const auto again = std::unique(
+      pulses.begin(), pulses.end(),
+      [](const Pulse& first, const Pulse& second) { return first.pulse == second.pulse; });
+  pulses.erase(again, pulses.end());
   return pulses;
 }
 

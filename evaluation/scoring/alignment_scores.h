@@ -6,8 +6,7 @@
 // have a frame of it; of several frames of a camera, its first.
 //
 //   spread         the range of the true mid-exposures of a pulse; median and 95 % quantile over
-//   the
-//                  evaluated pulses
+//                  the evaluated pulses
 //   aligned        the whole second since the capture's start (the first exposure's begin, warm-up
 //                  included) from which on the median spread of every second stays below 1, 0.1 and
 //                  0.01 ms, to the last evaluated pulse; NaN: it does not
