@@ -30,7 +30,7 @@ std::string figure_verdict_text(FigureVerdict verdict) {
 // "at most 0.250 ms".
 std::string figure_text(const FigureComparison& compared) {
   const scenarios::PublishedFigure& figure = compared.figure;
-  const std::string number = metric_text(metric_of(compared), figure.number());
+  std::string number = metric_text(metric_of(compared), figure.number());
   if (figure.value) return number;
   return fmt::format("{} {}", figure.at_most ? "at most" : "at least", number);
 }
