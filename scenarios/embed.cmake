@@ -1,7 +1,26 @@
 # Writes OUTPUT: the schemas, scenarios, profiles, parts and studies of FOLDER as the C++ source behind
 # scenarios/builtin_files.h. Run by the build whenever one of the files has changed.
 
-# Sets `result` to the initializers of the files of a folder, and `schema` to the text of its schema.
+# Sets `result` to an expression of the text, in literals below the 64 KiB that compilers must take.
+function(text_expression text result)
+  set(expression "std::string()")
+  string(LENGTH "${text}" rest)
+  while(rest GREATER 0)
+    string(SUBSTRING "${text}" 0 60000 piece)
+    if(rest GREATER 60000)
+      string(FIND "${piece}" "\n" length REVERSE)
+      string(SUBSTRING "${text}" 0 ${length} piece)
+    endif()
+    string(LENGTH "${piece}" length)
+    string(SUBSTRING "${text}" ${length} -1 text)
+    string(LENGTH "${text}" rest)
+    string(APPEND expression "\n      .append(R\"json(${piece})json\")")
+  endwhile()
+  set(${result} "${expression}" PARENT_SCOPE)
+endfunction()
+
+# Sets `result` to the initializers of the files of a folder, and `schema` to the text of its schema
+# as an expression.
 function(read_folder folder result schema)
   file(GLOB files ${folder}/*.json)
   list(REMOVE_ITEM files ${folder}/schema.json)
@@ -13,8 +32,7 @@ function(read_folder folder result schema)
     string(APPEND entries "      {\"${name}\", R\"json(${text})json\"},\n")
   endforeach()
   file(READ ${folder}/schema.json schema_text)
-  # Without its indentation: compilers need not take literals beyond 64 KiB.
-  string(REGEX REPLACE "\n +" "\n" schema_text "${schema_text}")
+  text_expression("${schema_text}" schema_text)
   set(${result} "${entries}" PARENT_SCOPE)
   set(${schema} "${schema_text}" PARENT_SCOPE)
 endfunction()
@@ -28,6 +46,8 @@ read_folder(${FOLDER}/studies studies study_schema)
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 #include "scenarios/builtin_files.h"
 
+#include <string>
+
 namespace simbench::scenarios {
 
 const std::vector<BuiltinFile>& builtin_files() {
@@ -36,7 +56,10 @@ const std::vector<BuiltinFile>& builtin_files() {
   return files;
 }
 
-std::string_view schema_text() { return R"json(@schema@)json"; }
+std::string_view schema_text() {
+  static const std::string text = @schema@;
+  return text;
+}
 
 const std::vector<BuiltinFile>& camera_files() {
   static const std::vector<BuiltinFile> files = {
@@ -44,7 +67,10 @@ const std::vector<BuiltinFile>& camera_files() {
   return files;
 }
 
-std::string_view camera_schema_text() { return R"json(@camera_schema@)json"; }
+std::string_view camera_schema_text() {
+  static const std::string text = @camera_schema@;
+  return text;
+}
 
 const std::vector<BuiltinFile>& oscillator_files() {
   static const std::vector<BuiltinFile> files = {
@@ -52,7 +78,10 @@ const std::vector<BuiltinFile>& oscillator_files() {
   return files;
 }
 
-std::string_view oscillator_schema_text() { return R"json(@oscillator_schema@)json"; }
+std::string_view oscillator_schema_text() {
+  static const std::string text = @oscillator_schema@;
+  return text;
+}
 
 const std::vector<BuiltinFile>& part_files() {
   static const std::vector<BuiltinFile> files = {
@@ -60,7 +89,10 @@ const std::vector<BuiltinFile>& part_files() {
   return files;
 }
 
-std::string_view part_schema_text() { return R"json(@part_schema@)json"; }
+std::string_view part_schema_text() {
+  static const std::string text = @part_schema@;
+  return text;
+}
 
 const std::vector<BuiltinFile>& study_files() {
   static const std::vector<BuiltinFile> files = {
@@ -68,7 +100,10 @@ const std::vector<BuiltinFile>& study_files() {
   return files;
 }
 
-std::string_view study_schema_text() { return R"json(@study_schema@)json"; }
+std::string_view study_schema_text() {
+  static const std::string text = @study_schema@;
+  return text;
+}
 
 }  // namespace simbench::scenarios
 ]])

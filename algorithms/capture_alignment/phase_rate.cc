@@ -225,7 +225,6 @@ Task<void> steer_by_line(Host& host, FrameControl& control, PhaseRateSettings se
 }
 
 CaptureAlignmentEntry phase_rate() {
-  const PhaseRateSettings defaults;
   CaptureAlignmentEntry entry;
   entry.info.name = "phase_rate";
   entry.info.family = "phase_rate";
