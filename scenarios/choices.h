@@ -72,11 +72,11 @@ constexpr bool waits_for_trigger(SyncMode mode) {
   return mode != SyncMode::kDefault && mode != SyncMode::kMaster;
 }
 
-// Which clock the sensor and frame stamps of the cameras are of.
-enum class StampClock : std::uint8_t { kCamera, kHost };
-constexpr auto words_of(StampClock) {
-  using enum StampClock;
-  return std::to_array<Word<StampClock>>({{kCamera, "camera"}, {kHost, "host"}});
+// Whose oscillator or clock something of a camera is of.
+enum class ClockOwner : std::uint8_t { kCamera, kHost };
+constexpr auto words_of(ClockOwner) {
+  using enum ClockOwner;
+  return std::to_array<Word<ClockOwner>>({{kCamera, "camera"}, {kHost, "host"}});
 }
 
 // How the cameras of a USB controller share its bandwidth.

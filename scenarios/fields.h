@@ -202,7 +202,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameControlModel, adjust_frame, insert_frame
                                    start_at, granularity_us, shortest_ms, longest_ms,
                                    latency_frames, delay_ms, delay_exponential_ms, loss_probability,
                                    insert_stretches, insert_noise_sigma_us, start_jitter_sigma_us,
-                                   frame_jitter_sigma_us)
+                                   frame_jitter_sigma_us, sensor_clock)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LedClockModel, interval_ms, first_ms, last_ms, step_ms,
                                    missed_probability, wrong_probability, skew_sigma_ppm,
                                    row_spread_share)

@@ -11,7 +11,19 @@ namespace {
 
 void check_clock(const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
-  if (cameras.stamp_clock != StampClock::kHost || !cameras.clock_poll.is_on()) return;
+  if (cameras.frame_control && cameras.frame_control->sensor_clock == ClockOwner::kHost) {
+    if (cameras.stamp_clock != ClockOwner::kHost) {
+      fail_at(scenario, "/cameras/frame_control/sensor_clock",
+              "found \"host\", allowed \"camera\" where the stamps are of the camera's own clock "
+              "(/cameras/stamp_clock)");
+    }
+    if (!cameras.skew_of_camera_ppm.empty()) {
+      fail_at(scenario, "/cameras/skew_of_camera_ppm",
+              "found skews, allowed none where the hosts' oscillators count the frames "
+              "(/cameras/frame_control/sensor_clock)");
+    }
+  }
+  if (cameras.stamp_clock != ClockOwner::kHost || !cameras.clock_poll.is_on()) return;
   fail_at(scenario, "/cameras/clock_poll/interval_ms",
           fmt::format("found {}, allowed 0 where cameras stamp with their host's clock "
                       "(/cameras/stamp_clock): they have no other that could be polled",

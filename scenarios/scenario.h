@@ -344,6 +344,7 @@ struct FrameControlModel {
   double insert_noise_sigma_us = 0;   // of the length of an inserted frame
   double start_jitter_sigma_us = 0;   // of a start at a time
   double frame_jitter_sigma_us = 0;   // of each exposure, which the next frames do not inherit
+  ClockOwner sensor_clock{};          // whose oscillator counts the lengths
 };
 
 // A ring of 100 LEDs of which one is lit at a time, and a counter of its turns, in view of all
@@ -389,7 +390,7 @@ struct Cameras {
   CalibrationError calibration{};
   std::optional<FrameControlModel> frame_control{};
   std::optional<LedClockModel> led_clock{};
-  StampClock stamp_clock{};  // of the sensor and frame stamps
+  ClockOwner stamp_clock{};  // of the sensor and frame stamps
 
   // Null if the cameras do not have that stream.
   const Stream* stream(StreamKind kind) const;

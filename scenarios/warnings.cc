@@ -183,7 +183,7 @@ void warn_about_temperature(Lines& lines, const Scenario& scenario) {
 // Beside cameras that are hosts themselves, the master may be a computer without one.
 void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
   const std::vector<std::size_t> counts = scenario.cameras_by_host();
-  const bool is_master_left_out = scenario.cameras.stamp_clock == StampClock::kHost;
+  const bool is_master_left_out = scenario.cameras.stamp_clock == ClockOwner::kHost;
   const std::int64_t idle =
       std::count(counts.begin() + (is_master_left_out ? 1 : 0), counts.end(), 0U);
   if (idle == 0) return;

@@ -1,33 +1,40 @@
-// phase_rate: every camera on a grid of the common time, by its own estimate of phase and rate.
+// phase_rate: every camera on one grid of the common time, by its own estimate of phase and rate.
 //
-// Each host steers its own cameras towards the multiples of the frame length on the common clock,
-// so hosts need no message but those of host_sync. A camera's exposures are followed by a line
-// (phase_line.h) that knows all moves, so stamps are averaged over seconds and a frame to come is
-// corrected before it is late:
+// Where the master's first camera happens to expose is the grid, so that it need not move; the
+// master tells the other hosts one instant of it, again and again, and nothing else. Each host
+// steers its own cameras. A camera's exposures are followed by a line (phase_line.h) that knows all
+// moves, so stamps are averaged over seconds and a frame to come is corrected before it is late:
 //
 //   - once the phase is known, one frame takes up all of its error: the only disturbed one;
 //   - from then on one frame is longer or shorter by a granule or a few, whenever the error that
-//   the
-//     line foretells exceeds the dead band, for as long as the rates differ;
-//   - a camera that can do no more than insert frames is put ahead of the grid by half of what it
-//     will drift within the horizon, and moved again when it has left the insert band; how far an
-//     inserted frame moves the next ones is learned from the first.
+//     the line foretells exceeds the dead band, for as long as the rates differ;
+//   - a camera that can do no more than insert frames is put where it will be on the grid in the
+//     middle of the horizon. If the inserted frame's noise has left it more than the insert band
+//     beside that, another is inserted; once it is there it stays until it has drifted out of twice
+//     the band. How far an inserted frame moves the next ones is learned from the first.
 //
 // A control that was lost or did something else shows in the stamps (PhaseLine::is_surprised) and
 // starts the line anew.
 //
-// Source: simbench's own.
+// The master's message is 8 bytes: the instant in nanoseconds of the common time, little-endian.
+// Where the master has no camera, or none that delivers, it is 0.
+//
+// Source: simbench's own; that a leader should tell its phase is an idea of libsoftwaresync's
+// README.
 
 #include <algorithm>
+#include <boost/endian/conversion.hpp>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "algorithms/capture_alignment/phase_line.h"
 #include "algorithms/capture_alignment/steered_camera.h"
+#include "algorithms/host_sync/join.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -38,17 +45,28 @@ struct PhaseRateSettings {
   std::uint32_t learn_frames = 20;
   double dead_band_granules = 0.5;
   double insert_gain = 2;
-  Nanoseconds insert_band = from_us(150);
-  Nanoseconds horizon = from_seconds(30);
+  Nanoseconds insert_band = from_us(100);
+  Nanoseconds horizon = from_seconds(10);
   Nanoseconds tolerance = from_ms(1);  // "aligned", of what is reported
+};
+
+// Of the insert band, that a goal may be wrong by.
+constexpr double kUnknownShare = 0.125;
+
+// An instant of the grid, as the cameras of a host know it.
+struct SharedGrid {
+  bool is_mine = false;  // the host's first camera that knows its phase sets it
+  std::optional<HostTime> due{};
 };
 
 // The steering of one camera.
 class PhaseRateCamera {
  public:
-  PhaseRateCamera(Host& host, FrameControl& control, const PhaseRateSettings& settings)
+  PhaseRateCamera(Host& host, FrameControl& control, const PhaseRateSettings& settings,
+                  std::shared_ptr<SharedGrid> grid)
       : camera_(host, control),
         settings_(settings),
+        grid_(std::move(grid)),
         limits_(control.limits()),
         line_(limits_.frame_length, settings.window),
         insert_gain_(settings.insert_gain) {}
@@ -64,9 +82,12 @@ class PhaseRateCamera {
 
   bool is_usable(const ExposedFrame& frame) const;
   bool add(const ExposedFrame& frame);
+  bool take_grid(std::uint32_t from);
   std::uint32_t next_effect(const ExposedFrame& frame) const;
   bool only_inserts() const;
-  double band_ns() const;
+  bool knows_enough() const;
+  double insert_goal_ns() const;
+  bool is_good(double error_ns);
   // Moves below this, a hundredth of a frame, are part of the camera's course.
   double large_ns() const {
     return std::max(to_ns(limits_.frame_length) / 100, 20 * to_ns(limits_.granularity));
@@ -80,11 +101,14 @@ class PhaseRateCamera {
 
   SteeredCamera camera_;
   PhaseRateSettings settings_;
+  std::shared_ptr<SharedGrid> grid_;
   FrameControlLimits limits_;
   PhaseLine line_;
   std::uint32_t quiet_until_ = 0;  // no control before this frame
   bool has_frames_ = false;
+  bool has_grid_ = false;
   bool resets_length_ = false;
+  bool holds_ = false;  // an inserted frame has put it where it should be
   double insert_gain_;
   bool knows_gain_ = false;
   Nanoseconds inserted_{};       // by which the last inserted frame was longer
@@ -109,10 +133,30 @@ bool PhaseRateCamera::only_inserts() const {
          !limits_.allows(FrameControlKind::kFrameLength);
 }
 
-// Errors below this are left.
-double PhaseRateCamera::band_ns() const {
-  return only_inserts() ? 2 * to_ns(settings_.insert_band)
-                        : settings_.dead_band_granules * to_ns(limits_.granularity);
+// A goal that lies some seconds ahead needs a rate that is known.
+bool PhaseRateCamera::knows_enough() const {
+  if (line_.frames() < settings_.learn_frames) return false;
+  const double half_horizon = 0.5 * to_ns(settings_.horizon) / to_ns(limits_.frame_length);
+  return !only_inserts() ||
+         line_.slope_sigma_ns() * half_horizon < kUnknownShare * to_ns(settings_.insert_band);
+}
+
+// Ahead of the grid by half of what it will drift within the horizon.
+double PhaseRateCamera::insert_goal_ns() const {
+  const double drift_ns = line_.slope_ns() * to_ns(settings_.horizon) / to_ns(limits_.frame_length);
+  const double most_ns = to_ns(settings_.insert_band);
+  return -std::clamp(drift_ns / 2, -most_ns, most_ns);
+}
+
+// Whether the camera is left alone with this error.
+bool PhaseRateCamera::is_good(double error_ns) {
+  if (!only_inserts()) {
+    return std::abs(error_ns) <= settings_.dead_band_granules * to_ns(limits_.granularity);
+  }
+  const double band_ns = to_ns(settings_.insert_band);
+  holds_ =
+      holds_ ? std::abs(error_ns) <= 2 * band_ns : std::abs(error_ns - insert_goal_ns()) <= band_ns;
+  return holds_;
 }
 
 // One frame that is shorter if it can be, else one that is longer.
@@ -130,9 +174,7 @@ PhaseRateCamera::Correction PhaseRateCamera::exact(double error_ns) const {
 // Later by at least what the shortest inserted frame moves.
 PhaseRateCamera::Correction PhaseRateCamera::inserted(double error_ns) const {
   const double period_ns = to_ns(limits_.frame_length);
-  const double drift_ns = line_.slope_ns() * to_ns(settings_.horizon) / period_ns;
-  const double most_ns = to_ns(settings_.insert_band);
-  const double goal_ns = -std::clamp(drift_ns / 2, -most_ns, most_ns);
+  const double goal_ns = insert_goal_ns();
   const double least_ns = std::max(0.0, to_ns(limits_.shortest - camera_.length())) * insert_gain_;
   const double missing_ns = least_ns - (goal_ns - error_ns);
   const double periods = std::max(0.0, std::ceil(missing_ns / period_ns));
@@ -180,7 +222,9 @@ void PhaseRateCamera::learn_gain() {
 
 void PhaseRateCamera::report() {
   const double error_ns = std::abs(line_.error_ns(quiet_until_));
-  const bool is_aligned = error_ns < std::max(to_ns(settings_.tolerance), 2 * band_ns());
+  const double largest_step_ns =
+      to_ns(only_inserts() ? settings_.insert_band : limits_.granularity);
+  const bool is_aligned = error_ns < std::max(to_ns(settings_.tolerance), 2 * largest_step_ns);
   camera_.report(is_aligned, is_aligned ? "" : "on its way to the grid");
 }
 
@@ -191,8 +235,20 @@ bool PhaseRateCamera::add(const ExposedFrame& frame) {
   has_frames_ = true;
   if (is_after_move && frame.counter < quiet_until_) return false;
   line_.add(frame.counter, frame.exposed);
-  if (line_.is_surprised(large_ns())) line_.restart();
-  return frame.counter >= quiet_until_ && line_.frames() >= settings_.learn_frames;
+  if (line_.is_surprised(large_ns())) line_.forget();
+  return frame.counter >= quiet_until_ && knows_enough();
+}
+
+// False while no grid is known.
+bool PhaseRateCamera::take_grid(std::uint32_t from) {
+  if (has_grid_) return true;
+  if (!grid_->due) {
+    if (!grid_->is_mine) return false;
+    const double goal_ns = only_inserts() ? insert_goal_ns() : 0;
+    grid_->due = line_.due(from) + from_ns(line_.error_ns(from) - goal_ns);
+  }
+  line_.set_grid(*grid_->due, from);
+  return has_grid_ = true;
 }
 
 Task<void> PhaseRateCamera::run() {
@@ -209,20 +265,83 @@ Task<void> PhaseRateCamera::run() {
       co_await camera_.set_frame_length(camera_.length());
     }
     if (!add(frame)) continue;
+    const std::uint32_t from = next_effect(frame);
+    if (!take_grid(from)) continue;
     learn_gain();
     report();
-    const std::uint32_t from = next_effect(frame);
     const double error_ns = line_.error_ns(from);
-    if (std::abs(error_ns) <= band_ns()) continue;
+    if (is_good(error_ns)) continue;
     const bool is_taken = co_await correct(from, error_ns);
     if (!is_taken) co_return;
   }
 }
 
-Task<void> steer_by_line(Host& host, FrameControl& control, PhaseRateSettings settings) {
-  PhaseRateCamera steering(host, control, settings);
+Task<void> steer_by_line(Host& host, FrameControl& control, PhaseRateSettings settings,
+                         std::shared_ptr<SharedGrid> grid) {
+  PhaseRateCamera steering(host, control, settings, std::move(grid));
   co_await steering.run();
 }
+
+constexpr Nanoseconds kGridInterval = from_ms(500);
+// Times this far from zero can still be subtracted.
+constexpr std::int64_t kLastInstantNs = std::int64_t{1} << 62;
+
+Task<void> tell_grid(Host& host, std::vector<PeerId> slaves, std::shared_ptr<SharedGrid> grid) {
+  const SteadyTime latest = host.steady_clock().now() + SteeredCamera::kPatience;
+  while (true) {
+    const bool is_late = host.frame_controls().empty() || host.steady_clock().now() > latest;
+    if (!grid->due && is_late) grid->due = HostTime{};
+    if (grid->due) {
+      Bytes message(sizeof(std::int64_t));
+      boost::endian::store_little_s64(reinterpret_cast<unsigned char*>(message.data()),
+                                      grid->due->time_since_epoch().count());
+      for (const PeerId slave : slaves) {
+        co_await host.open_channel(slave, Transport::kAlignment).send(message);
+      }
+    }
+    co_await host.sleep_for(kGridInterval);
+  }
+}
+
+Task<void> hear_grid(Host& host, PeerId master, std::shared_ptr<SharedGrid> grid) {
+  MessageChannel& channel = host.open_channel(master, Transport::kAlignment);
+  while (!grid->due) {
+    const std::optional<ReceivedMessage> received =
+        co_await channel.receive(host.steady_clock().now() + kIdle);
+    if (!received || received->bytes.size() != sizeof(std::int64_t)) continue;
+    const std::int64_t due_ns = boost::endian::load_little_s64(
+        reinterpret_cast<const unsigned char*>(received->bytes.data()));
+    if (due_ns > -kLastInstantNs && due_ns < kLastInstantNs)
+      grid->due = HostTime(Nanoseconds(due_ns));
+  }
+}
+
+class PhaseRate final : public CaptureAlignment {
+ public:
+  explicit PhaseRate(const PhaseRateSettings& settings) : settings_(settings) {}
+
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override {
+    auto grid = std::make_shared<SharedGrid>(SharedGrid{.is_mine = true});
+    return run(host, tell_grid(host, std::move(slaves), grid), grid);
+  }
+  Task<void> run_slave(Host& host, PeerId master) override {
+    auto grid = std::make_shared<SharedGrid>();
+    return run(host, hear_grid(host, master, grid), grid);
+  }
+
+ private:
+  Task<void> run(Host& host, Task<void> messages, std::shared_ptr<SharedGrid> grid) const {
+    std::vector<Task<void>> tasks;
+    tasks.reserve(host.frame_controls().size() + 1);
+    tasks.push_back(std::move(messages));
+    for (FrameControl* const camera : host.frame_controls()) {
+      tasks.push_back(steer_by_line(host, *camera, settings_, grid));
+    }
+    return join_all(std::move(tasks));
+  }
+
+  PhaseRateSettings settings_;
+};
 
 CaptureAlignmentEntry phase_rate() {
   CaptureAlignmentEntry entry;
@@ -239,14 +358,15 @@ CaptureAlignmentEntry phase_rate() {
       number_parameter("dead_band_granules", 0.5, 0.5, 1e6,
                        "errors below this are left, where a frame can be longer or shorter",
                        "ours: what rounding leaves"),
-      number_parameter("insert_band_ms", 0.15, 0.001, 1e3,
-                       "errors below twice this are left, where frames can be inserted only",
-                       "ours"),
+      number_parameter("insert_band_ms", 0.1, 0.001, 1e3,
+                       "as near an inserted frame has to come to its goal, where there is no other "
+                       "control; what drifts out of twice this is moved again",
+                       "libsoftwaresync's threshold"),
       number_parameter("insert_gain", 2, 0.5, 3,
                        "how often an inserted frame moves by its excess, until that is learned",
                        "libsoftwaresync's PhaseAligner, which lengthens by half of the shift"),
-      number_parameter("horizon_s", 30, 0, 1e5, "time for which an inserted frame should last",
-                       "ours"),
+      number_parameter("horizon_s", 10, 0, 1e5, "time for which an inserted frame should last",
+                       "ours: a take"),
   };
   entry.make = [](const Parameters& parameters) {
     PhaseRateSettings settings;
@@ -256,9 +376,7 @@ CaptureAlignmentEntry phase_rate() {
     settings.insert_band = from_ms(parameters.number("insert_band_ms"));
     settings.insert_gain = parameters.number("insert_gain");
     settings.horizon = from_seconds(parameters.number("horizon_s"));
-    return std::make_unique<EachCamera>([settings](Host& host, FrameControl& control) {
-      return steer_by_line(host, control, settings);
-    });
+    return std::make_unique<PhaseRate>(settings);
   };
   return entry;
 }

@@ -172,7 +172,7 @@ std::string lacking(const Scenario& scenario, Need need) {
                  ? ""
                  : "polls of the cameras' clocks (/cameras/clock_poll/interval_ms is 0)";
     case Need::kHostStamps:
-      return scenario.cameras.stamp_clock == scenarios::StampClock::kHost
+      return scenario.cameras.stamp_clock == scenarios::ClockOwner::kHost
                  ? ""
                  : "cameras that stamp with their host's clock (/cameras/stamp_clock is not "
                    "\"host\")";

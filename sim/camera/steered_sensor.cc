@@ -122,8 +122,9 @@ void SteeredSensor::latch(const FrameCommand& command, TrueTime at, TrueTime mad
   }
   if (command.kind == FrameControlKind::kInsertFrame) {
     inserted_[frame + 1] = length - settings_.limits.granularity;
-    const Nanoseconds made = length + from_ns(draws_.normal(settings_.insert_noise_sigma_ns));
-    for (std::int64_t i = 0; i < settings_.insert_stretches; ++i) single_[frame + i] = made;
+    for (std::int64_t i = 0; i < settings_.insert_stretches; ++i) {
+      single_[frame + i] = length + from_ns(draws_.normal(settings_.insert_noise_sigma_ns));
+    }
   }
   if (frame == frame_) plan_next();
 }

@@ -44,7 +44,7 @@ struct SteeredSensorSettings {
   Nanoseconds readout{};
   double jitter_sigma_ns = 0;
   std::int64_t insert_stretches = 1;  // frames that get the length of an inserted one
-  double insert_noise_sigma_ns = 0;   // of that length
+  double insert_noise_sigma_ns = 0;   // of that length, each frame's own
   // Ideal: the instants at which the exposures should have their middle.
   bool is_ideal = false;
   TrueTime first_due{};

@@ -20,21 +20,6 @@ std::string host_component(std::size_t host, const char* what) {
   return "host" + std::to_string(host) + ": " + what;
 }
 
-OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run_seed,
-                                std::size_t host) {
-  if (host == 0 && hosts.master_is_exact) return OscillatorModel(0);
-  OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"));
-  const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
-  if (!skews_ppm.empty()) oscillator.set_skew(skews_ppm[host] * 1e-6);
-  const double coefficient_ppb_per_k = hosts.clock.oscillator.temperature_coefficient_ppb_per_k;
-  if (hosts.temperature && coefficient_ppb_per_k != 0) {
-    oscillator.set_temperature(
-        TemperatureCourse(*hosts.temperature, run_seed, host_component(host, "temperature")),
-        coefficient_ppb_per_k);
-  }
-  return oscillator;
-}
-
 // The offset of a slave's clock before synchronisation.
 double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
                  InitialClocks initial_clocks, std::size_t host, double skew_against_master) {
@@ -50,6 +35,21 @@ double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
 }
 
 }  // namespace
+
+OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run_seed,
+                                std::size_t host) {
+  if (host == 0 && hosts.master_is_exact) return OscillatorModel(0);
+  OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"));
+  const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
+  if (!skews_ppm.empty()) oscillator.set_skew(skews_ppm[host] * 1e-6);
+  const double coefficient_ppb_per_k = hosts.clock.oscillator.temperature_coefficient_ppb_per_k;
+  if (hosts.temperature && coefficient_ppb_per_k != 0) {
+    oscillator.set_temperature(
+        TemperatureCourse(*hosts.temperature, run_seed, host_component(host, "temperature")),
+        coefficient_ppb_per_k);
+  }
+  return oscillator;
+}
 
 HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed,
                      std::string_view load_key, InitialClocks initial_clocks,

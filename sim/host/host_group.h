@@ -33,6 +33,7 @@
 #include "algorithms/ports/host_sync.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
+#include "sim/clock/oscillator.h"
 #include "sim/clock/system_clock.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/faults/faults.h"
@@ -45,6 +46,10 @@
 #include "sim/trigger/trigger_tree.h"
 
 namespace simbench::sim {
+
+// The oscillator of that host, as every run of the seed has it.
+OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run_seed,
+                                std::size_t host);
 
 class HostGroup {
  public:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "sim/host/host_group.h"
 #include "sim/host/sim_frame_control.h"
 
 namespace simbench::sim {
@@ -114,7 +115,10 @@ void Cameras::add_sensors(TrueTime start, Steering steering) {
     stream.started = TrueTime{} + start_delay(scenario_, seed_, stream.camera) +
                      from_ns(phase.uniform(0, period_ns));
     stream.sensor = std::make_unique<SteeredSensor>(
-        settings, camera_oscillator(scenario_, seed_, stream.camera, start),
+        settings,
+        model.sensor_clock == scenarios::ClockOwner::kHost
+            ? host_oscillator(scenario_.hosts, seed_, stream.host)
+            : camera_oscillator(scenario_, seed_, stream.camera, start),
         RandomStream(seed_, "camera/sensor", stream.camera), stream.started, start);
   }
 }

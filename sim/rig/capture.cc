@@ -29,7 +29,7 @@ Capture::Capture(const scenarios::Scenario& scenario, Engine& engine,
       arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)),
       backend_stamps_(scenario.usb.backend_stamp, arrival_quantum_),
       interfaces_(std::move(interfaces)),
-      stamps_on_host_(scenario.cameras.stamp_clock == scenarios::StampClock::kHost),
+      stamps_on_host_(scenario.cameras.stamp_clock == scenarios::ClockOwner::kHost),
       host_errors_(clocks_.size()) {
   interfaces_.resize(clocks_.size(), ClockInterface({}, {}, {}));
 }

@@ -31,7 +31,7 @@ FrameFeeds::FrameFeeds(const scenarios::Scenario& scenario, HostGroup& hosts)
     : hosts_(hosts),
       scored_(scenario.evaluation.stream),
       traffic_share_(scenario.network.capture_traffic_share),
-      stamps_on_host_(scenario.cameras.stamp_clock == scenarios::StampClock::kHost) {}
+      stamps_on_host_(scenario.cameras.stamp_clock == scenarios::ClockOwner::kHost) {}
 
 bool FrameFeeds::is_open() const { return hosts_.frames().is_open(); }
 

@@ -105,7 +105,7 @@ TEST(FrameControl, CamerasWithoutATriggerInputLoad) {
        {"5phone_wifi_30fps", "8cam_raspberry_30fps", "6cam_gige_ptp_60fps", "4oak_poe_30fps"}) {
     const Scenario scenario = load_scenario(name);
     EXPECT_EQ(scenario.cameras.sync_mode, SyncMode::kDefault) << name;
-    EXPECT_EQ(scenario.cameras.stamp_clock, StampClock::kHost) << name;
+    EXPECT_EQ(scenario.cameras.stamp_clock, ClockOwner::kHost) << name;
     EXPECT_GE(scenario.timeline.warm_up_ms, 6'000) << name;
     ASSERT_TRUE(scenario.cameras.frame_control) << name;
     // A camera is a host itself.

@@ -65,7 +65,8 @@ json full_document() {
                   "start_at": true, "granularity_us": 10, "shortest_ms": 5, "longest_ms": 50,
                   "latency_frames": 2, "delay_ms": 1, "delay_exponential_ms": 1,
                   "loss_probability": 0, "insert_stretches": 1, "insert_noise_sigma_us": 1,
-                  "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1}},
+                  "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1,
+                  "sensor_clock": "host"}},
     "studio": )" + studio_of("18cam_6host_30fps_studio"));
   json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
   // Beside which there is no wireless cell, and no link has a latency of its own, which only the
@@ -281,7 +282,8 @@ TEST(SchemaDrift, ChoicesHaveTheWordsOfTheSchema) {
       {"/cameras/sync_mode", all_texts<SyncMode>()},
       {"/cameras/streams/*/kind", all_texts<StreamKind>()},
       {"/cameras/streams/*/shutter", all_texts<ShutterKind>()},
-      {"/cameras/stamp_clock", all_texts<StampClock>()},
+      {"/cameras/stamp_clock", all_texts<ClockOwner>()},
+      {"/cameras/frame_control/sensor_clock", all_texts<ClockOwner>()},
       {"/usb/sharing", all_texts<UsbSharing>()},
       {"/evaluation/stream", all_texts<StreamKind>()},
       {"/evaluation/table", all_texts<TableKind>()},

@@ -46,7 +46,7 @@ TEST(PhaseLine, IsSurprisedByALostControlAndBeginsAnew) {
   line.move(20, from_us(-300));
   for (std::uint32_t n = 20; n < 26; ++n) line.add(n, exposed(n));
   EXPECT_TRUE(line.is_surprised(10'000));
-  line.restart();
+  line.forget();
   EXPECT_EQ(line.frames(), 0U);
   for (std::uint32_t n = 26; n < 40; ++n) line.add(n, exposed(n));
   EXPECT_NEAR(line.error_ns(40), 500'000 + 1600, 1e-3);
@@ -61,6 +61,21 @@ TEST(PhaseLine, AMoveByAPeriodShiftsTheGrid) {
   line.restart();
   for (std::uint32_t n = 20; n < 40; ++n) line.add(n, exposed(n, kFramePeriod - from_us(500)));
   EXPECT_NEAR(line.error_ns(40), 1600, 1e-3);
+}
+
+// Two stamps of which one is 1 us late: alone they would foretell 100 us after 100 frames.
+TEST(PhaseLine, ARestartKeepsTheRate) {
+  PhaseLine line(kFramePeriod, 100);
+  for (std::uint32_t n = 0; n < 50; ++n) line.add(n, exposed(n));
+  line.move(50, from_us(200));
+  line.restart();
+  EXPECT_NEAR(line.slope_ns(), 40, 1e-9);
+  line.add(60, exposed(60, from_us(250)));
+  line.add(61, exposed(61, from_us(251)));
+  EXPECT_NEAR(line.slope_ns(), 40, 0.1);
+  EXPECT_NEAR(line.error_ns(160), 750'500 + 40 * 160, 20);
+  line.forget();
+  EXPECT_EQ(line.slope_ns(), 0);
 }
 
 }  // namespace
