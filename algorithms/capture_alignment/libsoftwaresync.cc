@@ -3,11 +3,12 @@
 // there afterwards.
 //
 //     phase = exposed mod period, diff = goal - phase, aligned where |diff| < threshold
-//     d = diff, a period more if negative;  frame = period + d / 2
+//     d = diff, a period more if negative;  frame = period + share * d
 //     inserted: max(least exposure, frame - overhead) + overhead
 //
-// The half of d is the publication's: its phones stretch about two frames for one that is inserted.
-// Where only the inserted one is longer, each iteration halves what is left.
+// The share, a half, is the publication's: its phones stretch about two frames for one that is
+// inserted. Where only the inserted one is longer, each iteration halves what is left; a share of 1
+// suits such cameras.
 //
 // What a phone does by an exposure alone is a frame of that length here; so the overhead counts
 // only where the least exposure does. The configurations' periods and least exposures are those of
@@ -38,6 +39,7 @@ struct PhaseAlignSettings {
   Nanoseconds threshold;
   Nanoseconds overhead;
   Nanoseconds least_exposure_over_period;
+  double share_of_shift;
   int iterations;
   Nanoseconds settle;
 };
@@ -45,7 +47,7 @@ struct PhaseAlignSettings {
 Nanoseconds inserted_length(const PhaseAlignSettings& settings, Nanoseconds period,
                             Nanoseconds difference) {
   const Nanoseconds later = difference.count() < 0 ? difference + period : difference;
-  const Nanoseconds frame = period + later / 2;
+  const Nanoseconds frame = period + from_ns(settings.share_of_shift * to_ns(later));
   const Nanoseconds least = period + settings.least_exposure_over_period;
   return std::max(least, frame - settings.overhead) + settings.overhead;
 }
@@ -90,6 +92,7 @@ PhaseAlignSettings phase_align_settings(const Parameters& parameters) {
           .threshold = from_ms(parameters.number("threshold_ms")),
           .overhead = from_ms(parameters.number("overhead_ms")),
           .least_exposure_over_period = from_us(parameters.number("least_exposure_over_period_us")),
+          .share_of_shift = parameters.number("share_of_shift"),
           .iterations = static_cast<int>(parameters.number("iterations")),
           .settle = from_ms(parameters.number("settle_ms"))};
 }
@@ -115,6 +118,8 @@ std::vector<CaptureAlignmentEntry> capture_alignment_libsoftwaresync() {
       number_parameter("overhead_ms", 0.2, 0, 1e5, "of a frame beyond its exposure", kPhaseConfig),
       number_parameter("least_exposure_over_period_us", 50, -1e5, 1e5,
                        "the least exposure of an inserted frame, less the period", kPhaseConfig),
+      number_parameter("share_of_shift", 0.5, 0.01, 1, "by which the inserted frame is longer",
+                       kPhaseAligner),
       number_parameter("iterations", 5, 1, 1e4, "most frames to insert", kPhaseAligner),
       number_parameter("settle_ms", 400, 1, 1e6, "from one look at the phase to the next",
                        kPhaseAligner),

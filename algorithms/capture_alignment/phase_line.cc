@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace simbench {
 namespace {
@@ -10,32 +9,40 @@ namespace {
 constexpr double kNoiseGain = 1.0 / 32;
 constexpr double kNoiseGainAtFirst = 0.25;
 constexpr std::size_t kFew = 8;
+constexpr double kLeastVariance = 1;             // ns^2: stamps are whole nanoseconds
 constexpr double kSigmaOfMeanDistance = 1.2533;  // of a normal distribution
 constexpr double kManyNoises = 4;
 // Moves older than this, in frames, are in every frame that is still asked for.
 constexpr std::uint32_t kOld = 256;
+
+// Sum of the squared distances of n successive frames from their middle.
+double squared_distances(std::size_t frames) {
+  const auto n = static_cast<double>(frames);
+  return n * (n * n - 1) / 12;
+}
 
 }  // namespace
 
 PhaseLine::PhaseLine(Nanoseconds period, std::size_t window)
     : period_(period), window_(window), fit_(window) {}
 
-double PhaseLine::weight() const {
-  const auto n = static_cast<double>(std::min(frames_, window_));
-  return n * (n * n - 1) / 12;
+// Few frames do not tell their noise.
+double PhaseLine::noise_for_slope_ns() const {
+  return frames_ < kFew ? std::max(noise_ns_, known_noise_ns_) : noise_ns_;
+}
+
+double PhaseLine::precision() const {
+  const double sigma_ns = kSigmaOfMeanDistance * noise_for_slope_ns();
+  return squared_distances(std::min(frames_, window_)) / (sigma_ns * sigma_ns + kLeastVariance);
 }
 
 double PhaseLine::slope_ns() const {
-  const double weights = weight() + known_weight_;
-  if (weights == 0) return 0;
-  return (weight() * line_.slope + known_weight_ * known_slope_ns_) / weights;
+  const double sum = precision() + known_precision_;
+  if (sum == 0) return 0;
+  return (precision() * line_.slope + known_precision_ * known_slope_ns_) / sum;
 }
 
-double PhaseLine::slope_sigma_ns() const {
-  const double weights = weight() + known_weight_;
-  if (weights == 0) return std::numeric_limits<double>::infinity();
-  return kSigmaOfMeanDistance * noise_ns_ / std::sqrt(weights);
-}
+double PhaseLine::slope_sigma_ns() const { return 1 / std::sqrt(precision() + known_precision_); }
 
 double PhaseLine::line_at(std::int64_t frame) const {
   Line line = line_;
@@ -83,10 +90,14 @@ void PhaseLine::move(std::uint32_t from_counter, Nanoseconds by) {
 }
 
 void PhaseLine::restart() {
-  // No more than a full window tells, so that a rate that has changed is forgotten.
-  const auto most = static_cast<double>(window_);
+  const double noise_ns = noise_for_slope_ns();
   known_slope_ns_ = slope_ns();
-  known_weight_ = std::min(weight() + known_weight_, most * (most * most - 1) / 12);
+  known_precision_ += precision();
+  known_noise_ns_ = noise_ns;
+  // No more than a full window tells, so that a rate that has changed is forgotten.
+  const double variance = noise_ns * noise_ns + kLeastVariance;
+  known_precision_ = std::min(known_precision_, squared_distances(window_) / variance);
+  noise_ns_ = 0;
   fit_ = LineWindow(window_);
   line_ = {};
   frames_ = 0;
@@ -95,7 +106,7 @@ void PhaseLine::restart() {
 
 void PhaseLine::forget() {
   restart();
-  known_slope_ns_ = known_weight_ = 0;
+  known_slope_ns_ = known_precision_ = 0;
 }
 
 HostTime PhaseLine::due(std::uint32_t counter) const {

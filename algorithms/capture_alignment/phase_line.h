@@ -13,7 +13,8 @@
 // A move that was less or more than was said (a control was lost, a frame is longer than it should
 // be) shows as a surprise: the last stamps lie off the line together. forget() then begins a new
 // line with the stamps to come. restart() does so after a move whose size is not sure, and keeps
-// what is known of the rate.
+// what is known of the rate: the slope is the mean of the old and the new line's, each weighted by
+// its precision.
 //
 // Units: nanoseconds. Cost: O(1) a frame. Source: least squares;
 // docs/reference/capture_alignment.md section 10.
@@ -74,8 +75,9 @@ class PhaseLine {
     std::int64_t by_ns = 0;
   };
 
-  // Sum of the squared distances of the frames from their middle: how well they tell the rate.
-  double weight() const;
+  // How well the present line tells the rate: 1 / variance of its slope.
+  double precision() const;
+  double noise_for_slope_ns() const;
   double line_at(std::int64_t frame) const;
   std::int64_t frame_of(std::uint32_t counter) const {
     return static_cast<std::int64_t>(counter) - static_cast<std::int64_t>(zero_counter_);
@@ -91,7 +93,8 @@ class PhaseLine {
   LineWindow fit_;
   Line line_;
   double known_slope_ns_ = 0;  // by the frames before the present line
-  double known_weight_ = 0;
+  double known_precision_ = 0;
+  double known_noise_ns_ = 0;
   std::size_t frames_ = 0;
   double noise_ns_ = 0;
   std::array<double, kRecent> recent_ns_{};  // last distances from the line, a ring

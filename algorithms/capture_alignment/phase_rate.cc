@@ -45,7 +45,7 @@ struct PhaseRateSettings {
   std::uint32_t learn_frames = 20;
   double dead_band_granules = 0.5;
   double insert_gain = 2;
-  Nanoseconds insert_band = from_us(100);
+  Nanoseconds insert_band = from_us(85);
   Nanoseconds horizon = from_seconds(10);
   Nanoseconds tolerance = from_ms(1);  // "aligned", of what is reported
 };
@@ -358,10 +358,11 @@ CaptureAlignmentEntry phase_rate() {
       number_parameter("dead_band_granules", 0.5, 0.5, 1e6,
                        "errors below this are left, where a frame can be longer or shorter",
                        "ours: what rounding leaves"),
-      number_parameter("insert_band_ms", 0.1, 0.001, 1e3,
+      number_parameter("insert_band_ms", 0.085, 0.001, 1e3,
                        "as near an inserted frame has to come to its goal, where there is no other "
                        "control; what drifts out of twice this is moved again",
-                       "libsoftwaresync's threshold"),
+                       "ours: near libsoftwaresync's threshold; the disturbed frames that a camera "
+                       "saves which stays"),
       number_parameter("insert_gain", 2, 0.5, 3,
                        "how often an inserted frame moves by its excess, until that is learned",
                        "libsoftwaresync's PhaseAligner, which lengthens by half of the shift"),

@@ -24,6 +24,7 @@ const std::vector<FigureEntry>& figure_catalogue() {
        {"fig11", "fig12", "fig13"},
        kSeed},
       {"host_order", "Clock errors by place in the session", "", {}, kResults},
+      {"exposures", "Exposures of the cameras over time", "", {}, kRun},
       {"host_clocks", "Clock errors of the hosts over time", "", {}, kRun},
       {"gathering", "Gathered, dropped and wrongly gathered frames", "", {}, kRun},
       {"stamp_intervals",

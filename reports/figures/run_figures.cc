@@ -324,7 +324,75 @@ FigureSeries first_intervals(const RunDetail& run, std::size_t camera, std::size
   return made;
 }
 
+// A camera's true mid-exposures less those of the first camera, over the latter.
+FigureSeries exposure_differences(const RunDetail& run, std::size_t camera, double start_ms) {
+  FigureSeries made = series(camera_label(run, camera), Mark::kLine, static_cast<int>(camera));
+  const std::vector<FrameDetail>& frames = run.cameras[camera].frames;
+  std::size_t near = 0;
+  for (const FrameDetail& first : run.cameras.front().frames) {
+    const double at_ms = first.mid_exposure_ms();
+    const auto distance_ms = [&](std::size_t i) { return frames[i].mid_exposure_ms() - at_ms; };
+    while (near + 1 < frames.size() &&
+           std::abs(distance_ms(near + 1)) <= std::abs(distance_ms(near))) {
+      ++near;
+    }
+    const bool is_there =
+        near < frames.size() && std::abs(distance_ms(near)) <= 500 / run.frame_rate_hz;
+    made.x.push_back((at_ms - start_ms) / 1000);
+    made.y.push_back(is_there ? distance_ms(near) : evaluation::kNan);
+  }
+  return made;
+}
+
+// The range of all of them and the first camera; a gap where one has no frame.
+FigureSeries spread_series(const std::vector<FigureSeries>& differences) {
+  FigureSeries made = series("all cameras", Mark::kLine, 0);
+  made.x = differences.front().x;
+  for (std::size_t i = 0; i < made.x.size(); ++i) {
+    double least = 0;
+    double most = 0;
+    for (const FigureSeries& of_camera : differences) {
+      const double y = of_camera.y[i];
+      least = std::isnan(y) ? y : std::min(least, y);
+      most = std::isnan(y) ? y : std::max(most, y);
+      if (std::isnan(y)) break;
+    }
+    made.y.push_back(most - least);
+  }
+  return made;
+}
+
 }  // namespace
+
+Figure exposures(const RunDetail& run) {
+  Figure figure = of_run("exposures", run);
+  if (!run.has_truth) {
+    return absent(std::move(figure), "Only a simulated world has the true exposures.");
+  }
+  if (run.cameras.size() < 2 || run.cameras.front().frames.empty()) {
+    return absent(std::move(figure), "It takes the frames of two cameras.");
+  }
+  const char* const axis = "time since the start of the cameras (s)";
+  FigurePanel each = panel("Against the first camera", axis, "exposed later by (ms)");
+  FigurePanel all = panel("Spread", axis, "range of the exposures (ms)");
+  const double start_ms = capture_start_ms(run, run.cameras.front());
+  for (std::size_t camera = 1; camera < run.cameras.size(); ++camera) {
+    each.series.push_back(exposure_differences(run, camera, start_ms));
+  }
+  all.series.push_back(thinned(spread_series(each.series), kMostPoints));
+  all.log_y = is_wide(all);
+  for (FigureSeries& of_camera : each.series)
+    of_camera = thinned(std::move(of_camera), kMostPoints);
+  for (FigurePanel* const made : {&each, &all}) {
+    add_span("warm-up", 0, run.evaluated_start_ms - start_ms, 0, *made);
+    figure.panels.push_back(std::move(*made));
+  }
+  figure.caption = fmt::format(
+      "True middles of the exposures, each with the first camera's nearest. Where cameras are "
+      "steered, this is what the alignment reaches and how it drifts.{}",
+      camera_note(run));
+  return figure;
+}
 
 Figure host_clocks(const RunDetail& run) {
   Figure figure = of_run("host_clocks", run);
@@ -478,8 +546,8 @@ Figure first_seconds(const RunDetail& run) {
 }
 
 std::vector<Figure> run_figures(const RunDetail& run) {
-  return {stamp_intervals(run), stamps(run),      global_stamps(run), hosts(run),
-          first_seconds(run),   host_clocks(run), gathering(run)};
+  return {stamp_intervals(run), stamps(run),    global_stamps(run), hosts(run),
+          first_seconds(run),   exposures(run), host_clocks(run),   gathering(run)};
 }
 
 }  // namespace simbench::reports

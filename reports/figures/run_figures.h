@@ -26,6 +26,9 @@ Figure global_stamps(const evaluation::RunDetail& run);
 Figure hosts(const evaluation::RunDetail& run);
 // Fig. 7b: intervals of the global stamps in the first 10 s of the capture.
 Figure first_seconds(const evaluation::RunDetail& run);
+// How far the true exposures of the cameras are apart, over time: each camera's against the first
+// one's, and the range of all.
+Figure exposures(const evaluation::RunDetail& run);
 // Clock errors of the hosts before, during and after synchronisation.
 Figure host_clocks(const evaluation::RunDetail& run);
 // Which frames were gathered, dropped, gathered wrongly or left over.

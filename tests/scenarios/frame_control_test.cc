@@ -100,6 +100,17 @@ TEST(FrameControl, ACameraThatStampsWithItsHostsClockHasNoneToPoll) {
               HasSubstr("/cameras/clock_poll/interval_ms: found 100, allowed 0"));
 }
 
+TEST(FrameControl, FramesByTheHostsOscillatorNeedStampsByItToo) {
+  EXPECT_EQ(
+      refusal_of_set("5phone_wifi_30fps", {{"/cameras/stamp_clock", "camera"}}),
+      "5phone_wifi_30fps.json:94: /cameras/frame_control/sensor_clock: found \"host\", allowed \"camera\" where the "
+      "stamps are of the camera's own clock (/cameras/stamp_clock)");
+  EXPECT_THAT(
+      refusal_of_set("5phone_wifi_30fps", {{"/cameras/skew_of_camera_ppm", "[1, 2, 3, 4, 5]"}}),
+      HasSubstr("/cameras/skew_of_camera_ppm=[1, 2, 3, 4, 5]: found skews, allowed none "
+                "where the hosts' oscillators count the frames"));
+}
+
 TEST(FrameControl, CamerasWithoutATriggerInputLoad) {
   for (const char* name :
        {"5phone_wifi_30fps", "8cam_raspberry_30fps", "6cam_gige_ptp_60fps", "4oak_poe_30fps"}) {

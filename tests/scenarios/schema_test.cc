@@ -66,7 +66,7 @@ json full_document() {
                   "latency_frames": 2, "delay_ms": 1, "delay_exponential_ms": 1,
                   "loss_probability": 0, "insert_stretches": 1, "insert_noise_sigma_us": 1,
                   "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1,
-                  "sensor_clock": "host"}},
+                  "sensor_clock": "camera"}},
     "studio": )" + studio_of("18cam_6host_30fps_studio"));
   json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
   // Beside which there is no wireless cell, and no link has a latency of its own, which only the

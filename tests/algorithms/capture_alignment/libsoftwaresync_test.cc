@@ -51,6 +51,15 @@ TEST(LibsoftwaresyncTest, WhereOneFrameIsStretchedEachIterationHalvesWhatIsLeft)
   EXPECT_THAT(report.message, HasSubstr("after 5 inserted frames"));
 }
 
+TEST(LibsoftwaresyncTest, ThereTheWholeShiftNeedsOneIteration) {
+  FakeRig rig(1);
+  const FakeCamera& camera = rig.add(0, {.phase = from_ms(11.8)});
+  rig.run(*make_alignment("libsoftwaresync", {{"share_of_shift", 1.0}}), from_ms(6000));
+  ASSERT_EQ(camera.controls().size(), 1u);
+  EXPECT_EQ(camera.controls()[0].value, from_ms(33.2));
+  EXPECT_EQ(last_phase(camera), kGoal);
+}
+
 TEST(LibsoftwaresyncTest, AllCamerasMoveToTheGoalOfTheirHostsSystemClock) {
   FakeRig rig(3);
   rig.world().host(2).offset = from_ms(4);

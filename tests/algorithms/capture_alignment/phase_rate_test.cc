@@ -102,13 +102,13 @@ TEST(PhaseRateTest, ALostControlShowsInTheStampsAndIsRepeated) {
             from_us(1));
 }
 
-// With a rate of 20 ppm it is put 100 us ahead, which is half of what it drifts in 10 s, and goes
-// on until it is 200 us late: some 15 s. So are the next ones.
+// With a band of 0.1 ms and a rate of 20 ppm it is put 100 us ahead, which is half of what it
+// drifts in 10 s, and goes on until it is 200 us late: some 15 s. So are the next ones.
 TEST(PhaseRateTest, WhereFramesCanOnlyBeInsertedOneLastsAsLongAsItCan) {
   FakeRig rig(2);
   rig.add(0, phone(from_ms(3), 2));
   const FakeCamera& camera = rig.add(1, phone(from_ms(9), 2, 20));
-  rig.run(*make_alignment("phase_rate"), from_ms(40'000));
+  rig.run(*make_alignment("phase_rate", {{"insert_band_ms", 0.1}}), from_ms(40'000));
   ASSERT_EQ(camera.controls().size(), 3u);
   EXPECT_NEAR(to_ms(camera.controls()[2].at - camera.controls()[1].at), 15'000, 200);
   const auto [least, most] = errors_since(camera, from_ms(4000), from_ms(3));

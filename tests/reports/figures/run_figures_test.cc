@@ -84,6 +84,42 @@ TEST(RunFiguresTest, FirstSecondsBeginWithTheWarmUp) {
   EXPECT_NEAR(panel.spans[0].to, 3 * kPeriodMs / 1000, 1e-12);
 }
 
+// The second camera exposes 0.5 ms later than the first, the third 0.25 ms earlier and lacks a
+// frame.
+TEST(RunFiguresTest, ExposuresAreDrawnAgainstTheFirstCamera) {
+  RunDetail run = hand_made_run({0}, 3);
+  for (std::size_t camera = 1; camera < 3; ++camera) {
+    for (evaluation::FrameDetail& frame : run.cameras[camera].frames) {
+      frame.exposure_start_ms += camera == 1 ? 0.5 : -0.25;
+      frame.exposure_end_ms += camera == 1 ? 0.5 : -0.25;
+    }
+  }
+  run.cameras[2].frames.erase(run.cameras[2].frames.begin() + 5);
+  const Figure figure = exposures(run);
+  ASSERT_THAT(figure.panels, SizeIs(2));
+  ASSERT_THAT(figure.panels[0].series, SizeIs(2));
+  const FigurePanel& spread = figure.panels[1];
+  ASSERT_THAT(spread.series, SizeIs(1));
+  const std::size_t frames = run.cameras[0].frames.size();
+  ASSERT_THAT(spread.series[0].y, SizeIs(frames));
+  for (std::size_t i = 0; i < frames; ++i) {
+    EXPECT_NEAR(figure.panels[0].series[0].y[i], 0.5, 1e-9);
+    if (i == 5) {
+      EXPECT_TRUE(std::isnan(figure.panels[0].series[1].y[i]));
+      EXPECT_TRUE(std::isnan(spread.series[0].y[i]));
+    } else {
+      EXPECT_NEAR(figure.panels[0].series[1].y[i], -0.25, 1e-9);
+      EXPECT_NEAR(spread.series[0].y[i], 0.75, 1e-9);
+    }
+  }
+  EXPECT_FALSE(spread.log_y);
+  ASSERT_THAT(spread.spans, SizeIs(1));
+  EXPECT_EQ(spread.spans[0].label, "warm-up");
+  run.has_truth = false;
+  EXPECT_THAT(exposures(run).absent, HasSubstr("simulated world"));
+  EXPECT_THAT(exposures(hand_made_run({0}, 1)).absent, HasSubstr("two cameras"));
+}
+
 TEST(RunFiguresTest, ClocksAreDrawnOverAllOfTheRunAndAfterSynchronisation) {
   RunDetail run = hand_made_run({0, 2}, 1);
   run.world_start_ms = -100;

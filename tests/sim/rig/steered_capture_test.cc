@@ -209,6 +209,28 @@ TEST(SteeredCapture, CamerasStartAtTheirHostsTime) {
   EXPECT_LT(exposures.worst_spread_ms(130), 0.5);
 }
 
+// A clock that is 50 ppm fast makes frames that are 50 ppm short; the cameras' own oscillators do
+// not count.
+TEST(SteeredCapture, FramesByTheHostsOscillatorAreAsLongAsItSays) {
+  const scenarios::Scenario scenario = scenarios::load_scenario(
+      "5phone_wifi_30fps", {{"/timeline/frames", "300"},
+                            {"/hosts/clock/skew_of_host_ppm", "[0, 50, -50, 20, 0]"},
+                            {"/hosts/clock/oscillator/white_frequency_ppb", "0"},
+                            {"/hosts/clock/oscillator/random_walk_ppb_per_sqrt_s", "0"},
+                            {"/cameras/oscillator/skew_sigma_ppm", "1000"}});
+  Exposures exposures;
+  record_steered(scenario, registered("free_run").get(), exposures);
+  const double skews_ppm[] = {0, 50, -50, 20, 0};
+  for (std::size_t camera = 0; camera < 5; ++camera) {
+    const std::vector<double>& middles = exposures.middles[camera];
+    ASSERT_GT(middles.size(), 300U);
+    const double mean_ms =
+        (middles.back() - middles.front()) / static_cast<double>(middles.size() - 1);
+    // 33.32 ms in whole lines of 8 us.
+    EXPECT_NEAR(mean_ms * (1 + skews_ppm[camera] * 1e-6), 33.32, 33.32e-6) << camera;
+  }
+}
+
 TEST(SteeredCapture, TheSameSeedGivesTheSameWorld) {
   Exposures first;
   Exposures second;
