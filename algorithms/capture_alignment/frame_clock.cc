@@ -1,6 +1,7 @@
 #include "algorithms/capture_alignment/frame_clock.h"
 
 #include <optional>
+#include <utility>
 
 #include "algorithms/device_time/hull.h"
 #include "algorithms/device_time/poll_estimators.h"
@@ -39,12 +40,14 @@ SteadyTime FrameClock::estimated(const FrameArrival& frame) {
 
 ExposedFrame FrameClock::at(const FrameArrival& frame) {
   const SteadyTime exposed = frame.sensor_steady ? *frame.sensor_steady : estimated(frame);
+  const bool used_readings = std::exchange(uses_readings_, readings_ >= kFewestReadings);
   return {.counter = frame.counter,
           .exposed = frame.arrival + (exposed - frame.arrival_steady),
           .exposed_steady = exposed,
           .arrival_steady = frame.arrival_steady,
           .arrival = frame.arrival,
-          .exposure = Microseconds(frame.exposure_us)};
+          .exposure = Microseconds(frame.exposure_us),
+          .has_new_source = uses_readings_ && !used_readings};
 }
 
 }  // namespace simbench

@@ -16,7 +16,8 @@
 // A stamp by readings is off by half of what a request takes longer than its reply, one by arrivals
 // is late by the least time from the middle of an exposure to its arrival. That
 // is a constant of the camera model and is not taken off here: it is the same for all cameras of
-// one model, so it moves them all alike. The first frames have little to fit; their error falls
+// one model, so it moves them all alike. Where readings take over from arrivals, stamps step by
+// that: has_new_source tells. The first frames have little to fit; their error falls
 // with the number of frames (hull.h).
 //
 // Complexity a frame and memory: those of the switching hull. Source: the same.
@@ -42,7 +43,8 @@ struct ExposedFrame {
   SteadyTime exposed_steady{};
   SteadyTime arrival_steady{};
   HostTime arrival{};
-  Nanoseconds exposure{};  // its time
+  Nanoseconds exposure{};       // its time
+  bool has_new_source = false;  // from here on
 };
 
 class FrameClock {
@@ -57,6 +59,7 @@ class FrameClock {
   std::unique_ptr<DeviceTimeEstimator> by_arrivals_;
   std::unique_ptr<DeviceTimeEstimator> by_readings_;
   std::uint32_t readings_ = 0;
+  bool uses_readings_ = false;
 };
 
 }  // namespace simbench

@@ -36,13 +36,18 @@ double PhaseLine::precision() const {
   return squared_distances(std::min(frames_, window_)) / (sigma_ns * sigma_ns + kLeastVariance);
 }
 
-double PhaseLine::slope_ns() const {
-  const double sum = precision() + known_precision_;
-  if (sum == 0) return 0;
-  return (precision() * line_.slope + known_precision_ * known_slope_ns_) / sum;
+double PhaseLine::old_precision() const {
+  const double filled = static_cast<double>(frames_) / static_cast<double>(window_);
+  return known_precision_ * std::max(0.0, 1 - filled);
 }
 
-double PhaseLine::slope_sigma_ns() const { return 1 / std::sqrt(precision() + known_precision_); }
+double PhaseLine::slope_ns() const {
+  const double sum = precision() + old_precision();
+  if (sum == 0) return 0;
+  return (precision() * line_.slope + old_precision() * known_slope_ns_) / sum;
+}
+
+double PhaseLine::slope_sigma_ns() const { return 1 / std::sqrt(precision() + old_precision()); }
 
 double PhaseLine::line_at(std::int64_t frame) const {
   Line line = line_;
@@ -91,12 +96,10 @@ void PhaseLine::move(std::uint32_t from_counter, Nanoseconds by) {
 
 void PhaseLine::restart() {
   const double noise_ns = noise_for_slope_ns();
+  const double precision_of_both = precision() + old_precision();
   known_slope_ns_ = slope_ns();
-  known_precision_ += precision();
+  known_precision_ = precision_of_both;
   known_noise_ns_ = noise_ns;
-  // No more than a full window tells, so that a rate that has changed is forgotten.
-  const double variance = noise_ns * noise_ns + kLeastVariance;
-  known_precision_ = std::min(known_precision_, squared_distances(window_) / variance);
   noise_ns_ = 0;
   fit_ = LineWindow(window_);
   line_ = {};

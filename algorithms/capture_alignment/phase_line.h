@@ -14,7 +14,7 @@
 // be) shows as a surprise: the last stamps lie off the line together. forget() then begins a new
 // line with the stamps to come. restart() does so after a move whose size is not sure, and keeps
 // what is known of the rate: the slope is the mean of the old and the new line's, each weighted by
-// its precision.
+// its precision, and the old one is forgotten as the window fills.
 //
 // Units: nanoseconds. Cost: O(1) a frame. Source: least squares;
 // docs/reference/capture_alignment.md section 10.
@@ -78,6 +78,7 @@ class PhaseLine {
   // How well the present line tells the rate: 1 / variance of its slope.
   double precision() const;
   double noise_for_slope_ns() const;
+  double old_precision() const;
   double line_at(std::int64_t frame) const;
   std::int64_t frame_of(std::uint32_t counter) const {
     return static_cast<std::int64_t>(counter) - static_cast<std::int64_t>(zero_counter_);

@@ -234,6 +234,7 @@ bool PhaseRateCamera::add(const ExposedFrame& frame) {
   const bool is_after_move = has_frames_ && line_.frames() == 0;
   has_frames_ = true;
   if (is_after_move && frame.counter < quiet_until_) return false;
+  if (frame.has_new_source) line_.forget();
   line_.add(frame.counter, frame.exposed);
   if (line_.is_surprised(large_ns())) line_.forget();
   return frame.counter >= quiet_until_ && knows_enough();
