@@ -9,6 +9,7 @@
 
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/results_document.h"
 
 namespace simbench::reports {
 namespace {
@@ -43,12 +44,6 @@ void add_cells(CsvColumns form, const Row& row, std::vector<std::string>& cells)
     cells.push_back(csv_cell(metric.series(row).p05));
     cells.push_back(csv_cell(metric.series(row).p95));
   }
-}
-
-// Whether there is a column of what steers the exposures.
-bool has_capture_alignment(const evaluation::Results& results) {
-  return std::ranges::any_of(results.rows,
-                             [](const Row& row) { return !row.capture_alignment.empty(); });
 }
 
 std::vector<std::string> header(bool has_alignment) {
@@ -115,7 +110,7 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results) || !note_lines(results).empty();
-  const bool has_alignment = has_capture_alignment(results);
+  const bool has_alignment = has_capture_alignment(results.rows);
   std::vector<std::string> names = header(has_alignment);
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
   const std::string changed = scenarios::changed_text(results.derivation);
