@@ -153,5 +153,17 @@ TEST(PublishedFigures, OfTheAlignmentScenarios) {
   }
 }
 
+// Section 5: nobody shall take the agreement for a test.
+TEST(PublishedFigures, OfTheLedRigIsCalledAFit) {
+  const Scenario scenario = load_scenario("25cam_led_30fps");
+  ASSERT_EQ(scenario.published_figures.size(), 1U);
+  const PublishedFigure& figure = scenario.published_figures.front();
+  EXPECT_EQ(figure.pipeline, "rocsync_led.hardware_sync");
+  EXPECT_EQ(figure.metric, "rmdv_ms");
+  EXPECT_EQ(figure.value, 1.34);
+  EXPECT_THAT(figure.conditions, HasSubstr("A fit, no test"));
+  EXPECT_THAT(figure.source, HasSubstr("fitted"));
+}
+
 }  // namespace
 }  // namespace simbench::scenarios
