@@ -88,6 +88,35 @@ bool sets_a_clock(HostOperation operation) {
   }
 }
 
+// A request of a channel: the peer, whether it is the stream, then its own arguments.
+void read_channel(const py::tuple& tuple, const HostPort& port, HostRequest& made) {
+  made.peer = tuple[1].cast<PeerId>();
+  made.transport = tuple[2].cast<bool>() ? Transport::kStream : port.datagrams;
+  if (port.steers() && made.transport == Transport::kStream) {
+    throw py::value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
+  }
+  if (!port.peers.contains(made.peer)) {
+    throw py::value_error("channel: found host " + std::to_string(made.peer) +
+                          ", allowed: of a slave the master, 0; of the master its slaves");
+  }
+  switch (made.operation) {
+    case HostOperation::kSend:
+      made.bytes = bytes_of(tuple[3]);
+      break;
+    case HostOperation::kReceive:
+      made.ns = interval_ns(tuple[3]);
+      break;
+    case HostOperation::kExchange:
+      made.bytes = bytes_of(tuple[3]);
+      made.ns = interval_ns(tuple[4]);
+      break;
+    default:  // the stamps of a message
+      made.message = tuple[3].cast<MessageId>();
+      made.ns = interval_ns(tuple[4]);
+      break;
+  }
+}
+
 // Of a request of a camera.
 std::uint32_t camera_place(const py::handle& object, const HostPort& port) {
   const auto place = object.cast<std::uint32_t>();
@@ -143,17 +172,6 @@ HostRequest host_request(const py::handle& request, const HostPort& port) {
         "await host.sleep_for(), host.clock.now(), host.channel(peer).receive() and the like");
   }
   HostRequest made{.operation = found->second.operation};
-  const auto channel = [&] {
-    made.peer = tuple[1].cast<PeerId>();
-    made.transport = tuple[2].cast<bool>() ? Transport::kStream : port.datagrams;
-    if (port.steers() && made.transport == Transport::kStream) {
-      throw py::value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
-    }
-    if (!port.peers.contains(made.peer)) {
-      throw py::value_error("channel: found host " + std::to_string(made.peer) +
-                            ", allowed: of a slave the master, 0; of the master its slaves");
-    }
-  };
   switch (made.operation) {
     case HostOperation::kNow:
     case HostOperation::kCrossStamp:
@@ -176,23 +194,11 @@ HostRequest host_request(const py::handle& request, const HostPort& port) {
       made.ppb = tuple[2].cast<double>();
       break;
     case HostOperation::kSend:
-      channel();
-      made.bytes = bytes_of(tuple[3]);
-      break;
     case HostOperation::kReceive:
-      channel();
-      made.ns = interval_ns(tuple[3]);
-      break;
     case HostOperation::kExchange:
-      channel();
-      made.bytes = bytes_of(tuple[3]);
-      made.ns = interval_ns(tuple[4]);
-      break;
     case HostOperation::kTransmitStamp:
     case HostOperation::kHardwareTransmitStamp:
-      channel();
-      made.message = tuple[3].cast<MessageId>();
-      made.ns = interval_ns(tuple[4]);
+      read_channel(tuple, port, made);
       break;
     case HostOperation::kNextFrame:
       made.camera = camera_place(tuple[1], port);
