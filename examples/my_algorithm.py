@@ -3,10 +3,8 @@
     simbench run --python examples/my_algorithm.py --scenario 18cam_6host_45fps \\
         --pipelines yoon2021_both,yoon2021_both+mean_of_last+yoon2021,cristian+regression_30+in_order
 
-A capture_alignment is named by a scenario's pipeline: here to_the_grid in place of phase_rate.
-
     simbench run --python examples/my_algorithm.py --scenario 18cam_6host_30fps_without_trigger \\
-        --set '/pipelines/2/capture_alignment="to_the_grid"'
+        --pipelines phase_rate,two_way_hull+to_the_grid+two_way_poll_calibrated+yoon2021
 """
 
 import collections

@@ -244,7 +244,7 @@ def run(
     """Runs pipelines of a scenario over many seeds, as `simbench run` does.
 
     scenario: a name (list_scenarios()) or the path of a JSON file.
-    pipelines: names of the scenario's, "host_sync+device_time+gathering", or simbench.pipeline();
+    pipelines: names of the scenario's, "host_sync[+capture_alignment]+device_time+gathering", or simbench.pipeline();
         None: all.
     set: changes of the scenario, {"/trigger/rate_hz": 30}.
     jobs: threads; 0: one for every core.

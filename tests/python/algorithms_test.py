@@ -285,8 +285,8 @@ class CaptureAlignmentTest(unittest.TestCase):
     def test_the_example_aligns(self, _):
         with mock.patch.dict(os.environ, ENVIRONMENT):
             text = command.simbench(
-                "run", "--python", EXAMPLE, "--scenario", CABLELESS, "--pipelines", "phase_rate",
-                "--seeds", "1", "--set", '/pipelines/2/capture_alignment="to_the_grid"',
+                "run", "--python", EXAMPLE, "--scenario", CABLELESS, "--seeds", "1",
+                "--pipelines", "two_way_hull+to_the_grid+two_way_poll_calibrated+yoon2021",
                 "--format", "csv",
             )  # fmt: skip
         header, line = (row.split(",") for row in text.splitlines())
