@@ -31,7 +31,7 @@ scenarios::Scenario load_with_programs(const std::string& scenario,
                                        const std::vector<std::string>& sets,
                                        const ProgramOptions& options,
                                        std::vector<std::string>& pipelines,
-                                       evaluation::AdHoc ad_hoc = evaluation::AdHoc::kThreeStages);
+                                       evaluation::AdHoc ad_hoc = evaluation::AdHoc::kAllStages);
 
 }  // namespace simbench::cli
 

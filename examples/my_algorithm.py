@@ -1,7 +1,10 @@
-"""Three algorithms in Python, one for each stage.
+"""Four algorithms in Python, one for each stage.
 
     simbench run --python examples/my_algorithm.py --scenario 18cam_6host_45fps \\
         --pipelines yoon2021_both,yoon2021_both+mean_of_last+yoon2021,cristian+regression_30+in_order
+
+    simbench run --python examples/my_algorithm.py --scenario 18cam_6host_30fps_without_trigger \\
+        --pipelines phase_rate,two_way_hull+to_the_grid+two_way_poll_calibrated+yoon2021
 """
 
 import collections
@@ -31,6 +34,23 @@ async def cristian(host, settings):
         host.failed("no answer from the master; is it running?")
         return
     await host.clock.step(min(answered, key=lambda reply: reply.delay_ns).offset_ns)
+
+
+@simbench.capture_alignment("to_the_grid", dead_band_us=100.0)
+async def to_the_grid(host, camera, settings):
+    """moves each camera to the grid of the common clock by the length of one frame"""
+    period_ns = camera.frame_length_ns
+    while True:
+        exposure = await camera.next_frame()
+        if not exposure.settled:
+            continue
+        late_ns = (exposure.exposed_ns + period_ns // 2) % period_ns - period_ns // 2
+        camera.report(abs(late_ns) <= settings.dead_band_us * 1e3)
+        if abs(late_ns) <= settings.dead_band_us * 1e3:
+            continue
+        by_ns = min(max(-late_ns, camera.shortest_ns - period_ns), camera.longest_ns - period_ns)
+        if not await camera.adjust_frame(by_ns):
+            return
 
 
 @simbench.gathering("in_order")

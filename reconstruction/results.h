@@ -46,6 +46,7 @@ struct SeedReprojection {
 struct ReprojectionRow {
   std::string pipeline;
   std::string host_sync;
+  std::string capture_alignment{};  // empty: none
   std::string device_time;
   std::string gathering;
   std::vector<SeedReprojection> seeds;

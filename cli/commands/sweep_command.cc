@@ -167,7 +167,7 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
   }
   options.request.overrides = evaluation::with_ad_hoc_pipelines(
       options.request.scenario, overrides_of(options.sets), options.request.pipelines,
-      options.clocks ? evaluation::AdHoc::kHostSyncToo : evaluation::AdHoc::kThreeStages);
+      options.clocks ? evaluation::AdHoc::kHostSyncToo : evaluation::AdHoc::kAllStages);
   if (options.seeds) options.request.seeds = *options.seeds;
   set_kind(options, study, options.request);
   const SweepPlan plan = evaluation::make_plan(options.request);

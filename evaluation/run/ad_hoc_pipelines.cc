@@ -32,17 +32,25 @@ bool is_ad_hoc(const std::string& name, AdHoc allowed) {
 
 Override appended(const std::string& name, const Pipeline& first, AdHoc allowed) {
   const std::string label = "--pipelines " + scenarios::shown_text(name);
-  std::vector<std::string> parts = stages_of(name);
-  if (parts.size() == 1) parts.insert(parts.end(), {first.device_time, first.gathering});
+  const std::vector<std::string> parts = stages_of(name);
   const bool has_empty = std::ranges::count(parts, "") > 0;
-  if (parts.size() != 3 || has_empty) {
+  if (parts.size() == 2 || parts.size() > 4 || has_empty) {
     throw InputError(fmt::format(
-        "{}: found {}, allowed: {}host_sync+device_time+gathering (`simbench list` names them)",
+        "{}: found {}, allowed: {}host_sync[+capture_alignment]+device_time+gathering (`simbench "
+        "list` names them)",
         label, has_empty ? "an empty part" : fmt::format("{} parts", parts.size()),
         allowed == AdHoc::kHostSyncToo ? "host_sync or " : ""));
   }
-  const nlohmann::json pipeline = {
-      {"name", name}, {"host_sync", parts[0]}, {"device_time", parts[1]}, {"gathering", parts[2]}};
+  const bool is_alone = parts.size() == 1;
+  nlohmann::json pipeline = {
+      {"name", name},
+      {"host_sync", parts.front()},
+      {"device_time", is_alone ? first.device_time : parts[parts.size() - 2]},
+      {"gathering", is_alone ? first.gathering : parts.back()}};
+  if (parts.size() == 4) pipeline["capture_alignment"] = parts[1];
+  if (is_alone && !first.capture_alignment.empty()) {
+    pipeline["capture_alignment"] = first.capture_alignment;
+  }
   return {"/pipelines/-", pipeline.dump(), label};
 }
 

@@ -1,7 +1,8 @@
 // Pipelines that a user states by their algorithms, beside those of the scenario:
 //
-//   two_way_hull+hull_switch_10s+yoon2021     host_sync+device_time+gathering
-//   chrony                                    a host_sync alone, where the command allows it
+//   two_way_hull+hull_switch_10s+yoon2021        host_sync+device_time+gathering
+//   two_way_hull+phase_rate+hull_300+yoon2021    host_sync+capture_alignment+device_time+gathering
+//   chrony                                       a host_sync alone, where the command allows it
 //
 // They become pipelines of the scenario, named by that text, so that archives, recordings and
 // workers have them. A name that the scenario has is that pipeline.
@@ -22,7 +23,7 @@
 namespace simbench::evaluation {
 
 enum class AdHoc : std::uint8_t {
-  kThreeStages,
+  kAllStages,
   kHostSyncToo,  // a host_sync alone as well, with the other stages of the scenario's first
                  // pipeline
 };
@@ -33,7 +34,7 @@ enum class AdHoc : std::uint8_t {
 std::vector<scenarios::Override> with_ad_hoc_pipelines(const std::string& scenario,
                                                        std::vector<scenarios::Override> overrides,
                                                        const std::vector<std::string>& names,
-                                                       AdHoc allowed = AdHoc::kThreeStages);
+                                                       AdHoc allowed = AdHoc::kAllStages);
 
 }  // namespace simbench::evaluation
 

@@ -352,7 +352,7 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
     if (found == known.end()) {
       throw scenarios::InputError(
           fmt::format("pipelines of {}: {}; others by their algorithms, as "
-                      "host_sync+device_time+gathering",
+                      "host_sync[+capture_alignment]+device_time+gathering",
                       scenario.name, unknown(*name, known)));
     }
     if (std::find(names.begin(), name, *name) != name) {

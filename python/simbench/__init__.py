@@ -15,7 +15,9 @@ import os
 from typing import Any
 
 from . import _simbench
-from .algorithms import Frame, Parameter, Sample, device_time, gathering, host_sync, pipeline
+from .algorithms import (
+    Frame, Parameter, Sample, capture_alignment, device_time, gathering, host_sync, pipeline,
+)  # fmt: skip
 from .clock_runs import Clocks, clocks
 from .errors import Error, InputError, MissingPackage, OutputError
 from .results import Comparison, Result, compare, load, run
@@ -27,9 +29,9 @@ __version__: str = _simbench.version
 
 __all__ = [
     "Clocks", "Comparison", "Diagnosis", "Error", "Frame", "InputError", "MissingPackage",
-    "OutputError", "Parameter", "Replay", "Result", "Sample", "clocks", "compare", "describe",
-    "device_time", "diagnose", "gathering", "host_sync", "list_scenarios", "load", "pipeline",
-    "replay", "run",
+    "OutputError", "Parameter", "Replay", "Result", "Sample", "capture_alignment", "clocks",
+    "compare", "describe", "device_time", "diagnose", "gathering", "host_sync", "list_scenarios",
+    "load", "pipeline", "replay", "run",
 ]  # fmt: skip
 
 

@@ -13,7 +13,7 @@
 
 Keywords of a decorator are parameters of the algorithm with their defaults; scenarios set them
 under /algorithms/<name>/<parameter>. To decorate again, as a cell of a notebook that runs twice
-does, replaces the algorithm. docs/python.md explains all three stages.
+does, replaces the algorithm. docs/python.md explains all four stages.
 """
 
 import dataclasses
@@ -23,7 +23,7 @@ import types
 from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
 
 from . import _simbench
-from .host import Host
+from .host import Camera, Host
 
 Sample = _simbench.Sample
 Frame = _simbench.Frame
@@ -78,6 +78,7 @@ class Pipeline:
     name: str
     base: Optional[str]
     host_sync: Optional[str]
+    capture_alignment: Optional[str]  # "": none
     device_time: Optional[str]
     gathering: Optional[str]
 
@@ -240,7 +241,7 @@ def host_sync(name: str, *, server: Optional[Callable] = None, needs: Sequence[s
     """
 
     def register(function: Callable) -> Callable:
-        definition = _function(name, function, parameters, 2, "host, settings")
+        definition = _function("host_sync", name, function, parameters, "host, settings")
         definition["needs"] = list(needs)
         can_exchange = server is None
 
@@ -250,7 +251,7 @@ def host_sync(name: str, *, server: Optional[Callable] = None, needs: Sequence[s
         definition["make"] = follow
         definition["server"] = None
         if server is not None:
-            serving = _function(name, server, parameters, 3, "host, client, settings")
+            serving = _function("host_sync", name, server, parameters, "host, client, settings")
 
             def serve(port: Any, settings: dict, client: Optional[int]) -> Any:
                 return server(Host(port, False), client, types.SimpleNamespace(**settings))
@@ -264,21 +265,47 @@ def host_sync(name: str, *, server: Optional[Callable] = None, needs: Sequence[s
     return register
 
 
-def _function(name: str, function: Callable, parameters: dict, arguments: int, shape: str) -> dict:
+def capture_alignment(name: str, *, needs: Sequence[str] = (),
+                      **parameters: Any) -> Callable[[Callable], Callable]:
+    """Registers an `async def function(host, camera, settings)` that steers a camera's exposures.
+
+    One runs for each camera, on its host, from the start of the cameras until the capture ends; it
+    may return before. Datagrams between master and slaves are those of this stage alone.
+    """
+
+    def register(function: Callable) -> Callable:
+        definition = _function("capture_alignment", name, function, parameters,
+                               "host, camera, settings")
+        definition["needs"] = ["frame_control", *needs]
+
+        def steer(port: Any, settings: dict, place: int) -> Any:
+            return function(Host(port, False), Camera(port, place),
+                            types.SimpleNamespace(**settings))
+
+        definition["make"] = steer
+        _simbench.register_capture_alignment(definition)
+        function.simbench_name = name
+        return function
+
+    return register
+
+
+def _function(stage: str, name: str, function: Callable, parameters: dict, shape: str) -> dict:
     kind = "async def"
     if not inspect.iscoroutinefunction(function):
-        raise TypeError(f"host_sync {name}: found {function!r}, allowed: an async def function")
+        raise TypeError(f"{stage} {name}: found {function!r}, allowed: an async def function")
     _check_call(function, f"{kind} {function.__name__}", function,
-                f"{function.__name__}({shape})", [None] * arguments)
+                f"{function.__name__}({shape})", [None] * len(shape.split(",")))
     return _definition(name, function, kind, function, parameters)
 
 
 def pipeline(name: str, *, base: Optional[str] = None, host_sync: Any = None,
-             device_time: Any = None, gathering: Any = None) -> Pipeline:
+             capture_alignment: Any = None, device_time: Any = None,
+             gathering: Any = None) -> Pipeline:
     """A row of its own name: the base pipeline with these stages in place of its own.
 
-    A stage is the name of an algorithm, or a class or function that is decorated. Without `base`
-    the scenario's first pipeline is the base.
+    A stage is the name of an algorithm, or a class or function that is decorated; a
+    capture_alignment of "" is none. Without `base` the scenario's first pipeline is the base.
     """
 
     def name_of(stage: Any) -> Optional[str]:
@@ -290,4 +317,5 @@ def pipeline(name: str, *, base: Optional[str] = None, host_sync: Any = None,
                             "or a class or function that is decorated")
         return found
 
-    return Pipeline(name, base, name_of(host_sync), name_of(device_time), name_of(gathering))
+    return Pipeline(name, base, name_of(host_sync), name_of(capture_alignment),
+                    name_of(device_time), name_of(gathering))

@@ -1,8 +1,8 @@
-"""The host of a synchronisation algorithm in Python: its clocks and its network.
+"""The host of an algorithm in Python: its clocks, its network, and the cameras that it may steer.
 
-An `async def` function that @simbench.host_sync decorates gets a Host. What takes time on a real
-host is awaited and takes time in the simulator too. Times are whole nanoseconds; timeouts and
-sleeps are milliseconds.
+An `async def` function that @simbench.host_sync or @simbench.capture_alignment decorates gets a
+Host. What takes time on a real host is awaited and takes time in the simulator too. Times are whole
+nanoseconds; timeouts and sleeps are milliseconds.
 
     @simbench.host_sync("cristian", questions=16)
     async def cristian(host, settings):
@@ -12,7 +12,7 @@ sleeps are milliseconds.
 """
 
 import types
-from typing import NamedTuple, Optional
+from typing import FrozenSet, NamedTuple, Optional
 
 _NEVER_MS = 365 * 86400e3
 
@@ -182,3 +182,60 @@ class Host:
     def failed(self, why: str) -> None:
         """Reports that the clock could not be synchronised, and what would help."""
         self._port.failed(why)
+
+
+class Exposure(NamedTuple):
+    """A frame of a camera as Camera.next_frame() returns it."""
+
+    number: int  # the camera's frame counter
+    exposed_ns: int  # middle of the exposure on the host's system clock, as well as it knows it
+    exposed_steady_ns: int  # the same on its steady clock
+    arrival_ns: int
+    arrival_steady_ns: int
+    exposure_ns: int
+    settled: bool  # False: it may not show yet what the last control did
+
+
+class Camera:
+    """A camera of the host, whose exposures a capture_alignment steers by the frames' lengths.
+
+    A control returns whether the camera accepted it; what it refuses is reported with the reason.
+    It acts `latency_frames` frames later or more, may be lost, and is rounded to `granularity_ns`.
+    """
+
+    def __init__(self, port, place: int):
+        self._port = port
+        self._place = place
+        facts = port.camera(place)
+        self.number: int = facts["number"]  # on the rig
+        self.frame_length_ns: int = facts["frame_length_ns"]  # the usual one
+        self.shortest_ns: int = facts["shortest_ns"]  # that fits the exposure
+        self.longest_ns: int = facts["longest_ns"]
+        self.granularity_ns: int = facts["granularity_ns"]
+        self.latency_frames: int = facts["latency_frames"]
+        #: Those of adjust_frame, insert_frame, frame_length, start_at that the camera has.
+        self.controls: FrozenSet[str] = frozenset(facts["controls"])
+
+    async def next_frame(self) -> Exposure:
+        """Waits for it, however long."""
+        return await _ask("next_frame", self._place)
+
+    async def adjust_frame(self, by_ns: float) -> bool:
+        """One frame is longer by this, or shorter if it is negative."""
+        return await _ask("adjust_frame", self._place, round(by_ns))
+
+    async def insert_frame(self, length_ns: float) -> bool:
+        """One frame of that length, with an exposure as long as that allows."""
+        return await _ask("insert_frame", self._place, round(length_ns))
+
+    async def set_frame_length(self, length_ns: float) -> bool:
+        """All frames from now on."""
+        return await _ask("frame_length", self._place, round(length_ns))
+
+    async def start_at(self, at_ns: float) -> bool:
+        """Stops the camera; its next exposure begins when the system clock reads that."""
+        return await _ask("start_at", self._place, round(at_ns))
+
+    def report(self, aligned: bool, message: str = "") -> None:
+        """What the algorithm thinks it has reached; the message says what would help."""
+        self._port.report(self._place, aligned, message)

@@ -67,14 +67,19 @@ def _stages(pipeline: Pipeline, request: _simbench.RunRequest) -> Dict[str, Any]
     """A pipeline by its stages, as scenarios have it: those that it names, the others of its base."""
     known = _simbench.pipelines_of(request.scenario, request.sets)
     base = pipeline.base or known[0][0]
-    for name, host_sync, device_time, gathering in known:
+    for name, host_sync, capture_alignment, device_time, gathering in known:
         if name == base:
-            return {
+            stages = {
                 "name": pipeline.name,
                 "host_sync": pipeline.host_sync or host_sync,
                 "device_time": pipeline.device_time or device_time,
                 "gathering": pipeline.gathering or gathering,
             }
+            if pipeline.capture_alignment is not None:
+                capture_alignment = pipeline.capture_alignment
+            if capture_alignment:
+                stages["capture_alignment"] = capture_alignment
+            return stages
     names = ", ".join(name for name, *_ in known)
     raise InputError(f"pipeline {pipeline.name}: base: found {base!r}, allowed: {names}")
 
@@ -239,7 +244,7 @@ def run(
     """Runs pipelines of a scenario over many seeds, as `simbench run` does.
 
     scenario: a name (list_scenarios()) or the path of a JSON file.
-    pipelines: names of the scenario's, "host_sync+device_time+gathering", or simbench.pipeline();
+    pipelines: names of the scenario's, "host_sync[+capture_alignment]+device_time+gathering", or simbench.pipeline();
         None: all.
     set: changes of the scenario, {"/trigger/rate_hz": 30}.
     jobs: threads; 0: one for every core.

@@ -49,5 +49,6 @@ void bind_algorithms(pybind11::module_& module) {
   module.def("register_device_time", &register_python_device_time);
   module.def("register_gathering", &register_python_gathering);
   module.def("register_host_sync", &register_python_host_sync);
+  module.def("register_capture_alignment", &register_python_capture_alignment);
   module.def("command_line", &command_line);
 }

@@ -13,6 +13,7 @@ namespace simbench::python {
 void register_python_device_time(const pybind11::dict& definition);
 void register_python_gathering(const pybind11::dict& definition);
 void register_python_host_sync(const pybind11::dict& definition);
+void register_python_capture_alignment(const pybind11::dict& definition);
 
 }  // namespace simbench::python
 

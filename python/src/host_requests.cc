@@ -42,7 +42,12 @@ const std::map<std::string, OperationName, std::less<>>& operations() {
       {"hardware_transmit_stamp", {HostOperation::kHardwareTransmitStamp, 4}},
       {"cross_stamp", {HostOperation::kCrossStamp, 0}},
       {"step_card", {HostOperation::kStepCard, 1}},
-      {"adjust_card", {HostOperation::kAdjustCard, 1}}};
+      {"adjust_card", {HostOperation::kAdjustCard, 1}},
+      {"next_frame", {HostOperation::kNextFrame, 1}},
+      {"adjust_frame", {HostOperation::kAdjustFrame, 2}},
+      {"insert_frame", {HostOperation::kInsertFrame, 2}},
+      {"frame_length", {HostOperation::kFrameLength, 2}},
+      {"start_at", {HostOperation::kStartAt, 2}}};
   return all;
 }
 
@@ -69,7 +74,86 @@ std::int64_t interval_ns(const py::handle& object) {
   return std::clamp<std::int64_t>(object.cast<std::int64_t>(), 0, kLongestNs);
 }
 
+bool sets_a_clock(HostOperation operation) {
+  switch (operation) {
+    case HostOperation::kSet:
+    case HostOperation::kStep:
+    case HostOperation::kAdjustFrequency:
+    case HostOperation::kSlew:
+    case HostOperation::kStepCard:
+    case HostOperation::kAdjustCard:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// A request of a channel: the peer, whether it is the stream, then its own arguments.
+void read_channel(const py::tuple& tuple, const HostPort& port, HostRequest& made) {
+  made.peer = tuple[1].cast<PeerId>();
+  made.transport = tuple[2].cast<bool>() ? Transport::kStream : port.datagrams;
+  if (port.steers() && made.transport == Transport::kStream) {
+    throw py::value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
+  }
+  if (!port.peers.contains(made.peer)) {
+    throw py::value_error("channel: found host " + std::to_string(made.peer) +
+                          ", allowed: of a slave the master, 0; of the master its slaves");
+  }
+  switch (made.operation) {
+    case HostOperation::kSend:
+      made.bytes = bytes_of(tuple[3]);
+      break;
+    case HostOperation::kReceive:
+      made.ns = interval_ns(tuple[3]);
+      break;
+    case HostOperation::kExchange:
+      made.bytes = bytes_of(tuple[3]);
+      made.ns = interval_ns(tuple[4]);
+      break;
+    default:  // the stamps of a message
+      made.message = tuple[3].cast<MessageId>();
+      made.ns = interval_ns(tuple[4]);
+      break;
+  }
+}
+
+// Of a request of a camera.
+std::uint32_t camera_place(const py::handle& object, const HostPort& port) {
+  const auto place = object.cast<std::uint32_t>();
+  if (place < port.cameras.size()) return place;
+  throw py::value_error("camera: found the one at place " + std::to_string(place) +
+                        ", allowed: those of the host");
+}
+
+// What host and stage refuse.
+void check_allowed(const HostRequest& request, const HostPort& port) {
+  const HostOperation operation = request.operation;
+  if (port.steers() && sets_a_clock(operation)) {
+    throw py::value_error("a capture_alignment sets no clock; that is the part of host_sync");
+  }
+  const bool is_on_card = operation == HostOperation::kCrossStamp ||
+                          operation == HostOperation::kStepCard ||
+                          operation == HostOperation::kAdjustCard;
+  if (is_on_card && port.get().hardware_clock() == nullptr) {
+    throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
+  }
+  const bool receives =
+      operation == HostOperation::kReceive || operation == HostOperation::kExchange;
+  if (receives && port.receiving.contains({request.peer, request.transport})) {
+    throw py::value_error("another coroutine of this host waits on this channel");
+  }
+  if (operation == HostOperation::kNextFrame && port.watching.contains(request.camera)) {
+    throw py::value_error("another coroutine waits for a frame of this camera");
+  }
+}
+
 }  // namespace
+
+HostPort::HostPort(Host& of_run, std::set<PeerId> peers_of_run, Transport datagrams_of_run)
+    : host(&of_run), peers(std::move(peers_of_run)), datagrams(datagrams_of_run), outcome(of_run) {
+  if (!steers()) return;
+  for (FrameControl* const camera : of_run.frame_controls()) cameras.emplace_back(of_run, *camera);
+}
 
 Host& HostPort::get() const {
   if (host == nullptr) throw std::runtime_error("the host's run is over");
@@ -88,14 +172,6 @@ HostRequest host_request(const py::handle& request, const HostPort& port) {
         "await host.sleep_for(), host.clock.now(), host.channel(peer).receive() and the like");
   }
   HostRequest made{.operation = found->second.operation};
-  const auto channel = [&] {
-    made.peer = tuple[1].cast<PeerId>();
-    made.transport = tuple[2].cast<bool>() ? Transport::kStream : Transport::kDatagram;
-    if (!port.peers.contains(made.peer)) {
-      throw py::value_error("channel: found host " + std::to_string(made.peer) +
-                            ", allowed: of a slave the master, 0; of the master its slaves");
-    }
-  };
   switch (made.operation) {
     case HostOperation::kNow:
     case HostOperation::kCrossStamp:
@@ -118,36 +194,24 @@ HostRequest host_request(const py::handle& request, const HostPort& port) {
       made.ppb = tuple[2].cast<double>();
       break;
     case HostOperation::kSend:
-      channel();
-      made.bytes = bytes_of(tuple[3]);
-      break;
     case HostOperation::kReceive:
-      channel();
-      made.ns = interval_ns(tuple[3]);
-      break;
     case HostOperation::kExchange:
-      channel();
-      made.bytes = bytes_of(tuple[3]);
-      made.ns = interval_ns(tuple[4]);
-      break;
     case HostOperation::kTransmitStamp:
     case HostOperation::kHardwareTransmitStamp:
-      channel();
-      made.message = tuple[3].cast<MessageId>();
-      made.ns = interval_ns(tuple[4]);
+      read_channel(tuple, port, made);
+      break;
+    case HostOperation::kNextFrame:
+      made.camera = camera_place(tuple[1], port);
+      break;
+    case HostOperation::kAdjustFrame:
+    case HostOperation::kInsertFrame:
+    case HostOperation::kFrameLength:
+    case HostOperation::kStartAt:
+      made.camera = camera_place(tuple[1], port);
+      made.ns = time_ns(tuple[2]);
       break;
   }
-  const bool is_on_card = made.operation == HostOperation::kCrossStamp ||
-                          made.operation == HostOperation::kStepCard ||
-                          made.operation == HostOperation::kAdjustCard;
-  if (is_on_card && port.get().hardware_clock() == nullptr) {
-    throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
-  }
-  const bool receives =
-      made.operation == HostOperation::kReceive || made.operation == HostOperation::kExchange;
-  if (receives && port.receiving.contains({made.peer, made.transport})) {
-    throw py::value_error("another coroutine of this host waits on this channel");
-  }
+  check_allowed(made, port);
   return made;
 }
 
@@ -257,6 +321,48 @@ Task<HostAnswer> messaged(HostRequest request, std::shared_ptr<HostPort> port) {
   co_return answer_with(left);
 }
 
+// One wait at a time for a camera's frames.
+class Watching {
+ public:
+  Watching(std::shared_ptr<HostPort> port, std::uint32_t camera)
+      : port_(std::move(port)), camera_(camera) {
+    port_->watching.insert(camera_);
+  }
+  Watching(const Watching&) = delete;
+  Watching& operator=(const Watching&) = delete;
+  ~Watching() { port_->watching.erase(camera_); }
+
+ private:
+  std::shared_ptr<HostPort> port_;
+  std::uint32_t camera_;
+};
+
+Task<HostAnswer> steered(HostRequest request, std::shared_ptr<HostPort> port) {
+  SteeredCamera& camera = port->cameras[request.camera];
+  const Nanoseconds ns(request.ns);
+  bool is_taken = false;
+  switch (request.operation) {
+    case HostOperation::kNextFrame: {
+      const Watching watching(port, request.camera);
+      const ExposedFrame frame = co_await camera.next_frame();
+      co_return SteeredFrame{frame, camera.is_settled(frame)};
+    }
+    case HostOperation::kAdjustFrame:
+      is_taken = co_await camera.adjust_frame(ns);
+      break;
+    case HostOperation::kInsertFrame:
+      is_taken = co_await camera.insert_frame(ns);
+      break;
+    case HostOperation::kFrameLength:
+      is_taken = co_await camera.set_frame_length(ns);
+      break;
+    default:
+      is_taken = co_await camera.start_at(HostTime(ns));
+      break;
+  }
+  co_return is_taken;
+}
+
 }  // namespace
 
 Task<HostAnswer> answered(HostRequest request, std::shared_ptr<HostPort> port) {
@@ -297,6 +403,14 @@ Task<HostAnswer> answered(HostRequest request, std::shared_ptr<HostPort> port) {
     case HostOperation::kAdjustCard:
       co_await host.hardware_clock()->adjust_frequency(request.ppb);
       co_return std::monostate{};
+    case HostOperation::kNextFrame:
+    case HostOperation::kAdjustFrame:
+    case HostOperation::kInsertFrame:
+    case HostOperation::kFrameLength:
+    case HostOperation::kStartAt: {
+      HostAnswer answer = co_await steered(std::move(request), std::move(port));
+      co_return answer;
+    }
     default: {
       HostAnswer answer = co_await messaged(std::move(request), std::move(port));
       co_return answer;
@@ -312,6 +426,7 @@ py::object python_value(const HostAnswer& answer) {
     return py::module_::import("simbench.host").attr(type)(values...);
   };
   if (const auto* number = std::get_if<std::int64_t>(&answer)) return py::int_(*number);
+  if (const auto* is_taken = std::get_if<bool>(&answer)) return py::bool_(*is_taken);
   if (const auto* message = std::get_if<ReceivedMessage>(&answer)) {
     std::optional<std::int64_t> hardware;
     if (message->received_hardware) hardware = nanoseconds_of(*message->received_hardware);
@@ -325,6 +440,12 @@ py::object python_value(const HostAnswer& answer) {
   if (const auto* stamp = std::get_if<CrossStamp>(&answer)) {
     return record("CrossStamp", nanoseconds_of(stamp->before), nanoseconds_of(stamp->hardware),
                   nanoseconds_of(stamp->after));
+  }
+  if (const auto* steered = std::get_if<SteeredFrame>(&answer)) {
+    const ExposedFrame& frame = steered->frame;
+    return record("Exposure", frame.counter, nanoseconds_of(frame.exposed),
+                  nanoseconds_of(frame.exposed_steady), nanoseconds_of(frame.arrival),
+                  nanoseconds_of(frame.arrival_steady), frame.exposure.count(), steered->settled);
   }
   return py::none();
 }
@@ -369,6 +490,31 @@ Task<void> say_done(Host& host, PeerId server) {
   co_await channel.send(std::move(bytes));
 }
 
+namespace {
+
+py::dict camera_facts(const HostPort& port, std::uint32_t place) {
+  const FrameControl& camera = *port.get().frame_controls()[place];
+  const SteeredCamera& steered = port.cameras.at(place);
+  py::set controls;
+  for (std::size_t kind = 0; kind < kFrameControlNames.size(); ++kind) {
+    if (camera.limits().allowed[kind]) controls.add(py::str(kFrameControlNames[kind]));
+  }
+  return py::dict(
+      py::arg("number") = camera.camera(), py::arg("frame_length_ns") = steered.length().count(),
+      py::arg("shortest_ns") = steered.shortest().count(),
+      py::arg("longest_ns") = steered.longest().count(),
+      py::arg("granularity_ns") = camera.limits().granularity.count(),
+      py::arg("latency_frames") = camera.limits().latency_frames, py::arg("controls") = controls);
+}
+
+void report_failure(HostPort& port, const std::string& why) {
+  if (port.steers()) throw py::value_error("failed(): of a capture_alignment use camera.report()");
+  port.get();
+  port.outcome.failed(port.exchanges, why);
+}
+
+}  // namespace
+
 void bind_host_port(py::module_& module) {
   py::class_<HostPort, std::shared_ptr<HostPort>>(module, "HostPort")
       .def_property_readonly("id", [](const HostPort& port) { return port.get().id(); })
@@ -382,10 +528,13 @@ void bind_host_port(py::module_& module) {
              if (!stored) return std::nullopt;
              return std::pair(stored->ppb, stored->error_ppb);
            })
-      .def("failed", [](HostPort& port, const std::string& why) {
-        port.get();
-        port.outcome.failed(port.exchanges, why);
-      });
+      .def("failed", &report_failure)
+      .def("camera", &camera_facts)
+      .def("report",
+           [](HostPort& port, std::uint32_t place, bool aligned, const std::string& message) {
+             port.get();
+             port.cameras.at(place).report(aligned, message);
+           });
 }
 
 }  // namespace simbench::python

@@ -1,7 +1,7 @@
 // What a coroutine in Python asks of its host, and the answers.
 //
 // A coroutine yields a tuple, its name first, for each operation that takes time; simbench/host.py
-// has them. The driver (host_sync.cc) awaits the operation and sends the answer back.
+// has them. The driver (python_coroutine.cc) awaits the operation and sends the answer back.
 //
 //   const HostRequest request = host_request(tuple, port);   // with the GIL
 //   const HostAnswer answer = co_await answered(request, port);
@@ -11,7 +11,9 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <set>
@@ -19,6 +21,7 @@
 #include <utility>
 #include <variant>
 
+#include "algorithms/capture_alignment/steered_camera.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/ports/host.h"
 
@@ -27,21 +30,26 @@ namespace simbench::python {
 namespace py = pybind11;
 
 // The host of a run as Python sees it, shared by the coroutines of that host. It outlives the run
-// if the algorithm keeps it, but has no host then.
+// if the algorithm keeps it, but has no host then. That of a capture alignment has the host's
+// cameras and sets no clock.
 struct HostPort {
-  HostPort(Host& of_run, std::set<PeerId> peers_of_run)
-      : host(&of_run), peers(std::move(peers_of_run)), outcome(of_run) {}
+  // `datagrams_of_run`: Transport::kAlignment for a capture alignment, else kDatagram.
+  HostPort(Host& of_run, std::set<PeerId> peers_of_run, Transport datagrams_of_run);
 
   Host& get() const;  // throws std::runtime_error after the run
+  bool steers() const { return datagrams == Transport::kAlignment; }
 
   Host* host;
   std::set<PeerId> peers;  // to which it may open a channel
+  Transport datagrams;
+  std::deque<SteeredCamera> cameras{};  // in the order of Host::frame_controls()
   OutcomeReport outcome;
   std::uint32_t exchanges = 0;
   // The last index of a question to a peer.
   std::uint64_t index = 0;
   // On which a coroutine waits; one at a time may.
   std::set<std::pair<PeerId, Transport>> receiving{};
+  std::set<std::uint32_t> watching{};  // cameras, by their place; likewise
 };
 
 enum class HostOperation : std::uint8_t {
@@ -60,16 +68,28 @@ enum class HostOperation : std::uint8_t {
   kCrossStamp,
   kStepCard,
   kAdjustCard,
+  kNextFrame,
+  kAdjustFrame,
+  kInsertFrame,
+  kFrameLength,
+  kStartAt,
 };
 
 struct HostRequest {
   HostOperation operation = HostOperation::kNow;
-  std::int64_t ns = 0;  // a time, an offset, an interval or a timeout
+  std::int64_t ns = 0;  // a time, an offset, an interval, a length or a timeout
   double ppb = 0;
   PeerId peer = 0;
   Transport transport = Transport::kDatagram;
   MessageId message = 0;
   Bytes bytes{};
+  std::uint32_t camera = 0;  // its place on the host
+};
+
+// A frame, and whether it shows what the last control did (steered_camera.h).
+struct SteeredFrame {
+  ExposedFrame frame;
+  bool settled = false;
 };
 
 // An exchange with the answerer (answer_questions()); t1 and t4 on the own clock.
@@ -81,9 +101,9 @@ struct ExchangeReply {
   HostTime t4{};
 };
 
-// Nothing: the operation has no value, or its deadline has passed.
-using HostAnswer =
-    std::variant<std::monostate, std::int64_t, ReceivedMessage, ExchangeReply, CrossStamp>;
+// Nothing: the operation has no value, or its deadline has passed. A bool: a control was accepted.
+using HostAnswer = std::variant<std::monostate, std::int64_t, bool, ReceivedMessage, ExchangeReply,
+                                CrossStamp, SteeredFrame>;
 
 // Throws py::error_already_set or std::exception for a request that is none.
 HostRequest host_request(const py::handle& request, const HostPort& port);

@@ -61,13 +61,14 @@ Need need_of(const std::string& name) {
                                                     {"gnss", Need::kGnss},
                                                     {"trigger_line", Need::kTriggerLine},
                                                     {"frames", Need::kFrames},
+                                                    {"frame_control", Need::kFrameControl},
                                                     {"polls", Need::kPolls},
                                                     {"host_stamps", Need::kHostStamps}};
   const auto found = needs.find(name);
   if (found != needs.end()) return found->second;
   throw py::value_error(
       fmt::format("needs: found '{}', allowed: hardware_stamps, pps, gnss, trigger_line, frames, "
-                  "polls, host_stamps",
+                  "frame_control, polls, host_stamps",
                   name));
 }
 

@@ -32,7 +32,8 @@ py::list describe(const std::string& scenario) {
   return lines;
 }
 
-// The pipelines of a scenario with these changes: name, host_sync, device_time, gathering.
+// The pipelines of a scenario with these changes: name, host_sync, capture_alignment (may be
+// empty), device_time, gathering.
 py::list pipelines_of(const std::string& scenario,
                       const std::vector<std::pair<std::string, std::string>>& sets) {
   std::vector<simbench::scenarios::Override> overrides;
@@ -40,8 +41,8 @@ py::list pipelines_of(const std::string& scenario,
   for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
   py::list all;
   for (const auto& pipeline : simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
-    all.append(py::make_tuple(pipeline.name, pipeline.host_sync, pipeline.device_time,
-                              pipeline.gathering));
+    all.append(py::make_tuple(pipeline.name, pipeline.host_sync, pipeline.capture_alignment,
+                              pipeline.device_time, pipeline.gathering));
   }
   return all;
 }

@@ -145,6 +145,7 @@ class Experiment {
     for (const PipelineChoice& choice : choices_) {
       ReprojectionRow row{.pipeline = choice.pipeline.name,
                           .host_sync = choice.pipeline.host_sync,
+                          .capture_alignment = choice.pipeline.capture_alignment,
                           .device_time = choice.pipeline.device_time,
                           .gathering = choice.pipeline.gathering,
                           .seeds = {},

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/scoring/metrics.h"
 #include "reports/results/results_answer.h"
 #include "reports/text/html_text.h"
 #include "reports/text/number_text.h"
@@ -83,6 +84,21 @@ std::string axis_html(const LogAxis& axis) {
                      ticks);
 }
 
+// Of the metric that ranks; nothing if there is none.
+std::optional<double> published_of(const Results& results, const Row& row, RankedBy ranked_by) {
+  if (ranked_by == RankedBy::kAmd && row.published && row.published->amd_ms > 0) {
+    return row.published->amd_ms;
+  }
+  const Series* const ranked = &evaluation::ranked_series(row, ranked_by);
+  for (const evaluation::FigureComparison& compared : results.published_figures) {
+    const scenarios::PublishedFigure& figure = compared.figure;
+    const bool is_of_it = figure.pipeline == row.pipeline && figure.number() > 0 &&
+                          &evaluation::metric(figure.metric).series(row) == ranked;
+    if (is_of_it) return figure.number();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<OverviewRow> overview_rows(const Results& results, RankedBy ranked_by) {
@@ -97,10 +113,9 @@ std::vector<OverviewRow> overview_rows(const Results& results, RankedBy ranked_b
   const Row* const best = evaluation::best_of(drawn, ranked_by);
   rows.reserve(drawn.size());
   for (const Row* row : drawn) {
-    OverviewRow line{.row = row, .series = &evaluation::ranked_series(*row, ranked_by)};
-    if (ranked_by == RankedBy::kAmd && row->published && row->published->amd_ms > 0) {
-      line.published_ms = row->published->amd_ms;
-    }
+    OverviewRow line{.row = row,
+                     .series = &evaluation::ranked_series(*row, ranked_by),
+                     .published_ms = published_of(results, *row, ranked_by)};
     line.word =
         row == best ? kBest : evaluation::standing_name(evaluation::standing_by(*row, ranked_by));
     rows.push_back(std::move(line));

@@ -1,9 +1,10 @@
 // The first figure of a report: every pipeline on one logarithmic axis.
 //
 // A line each, in order of the median of what the answer ranks by (evaluation/answer/answer.h):
-// the band from 5 to 95 % over the seeds, the median, the published value where there is one. The
-// best pipeline, limits and references say so in words, not by colour alone. It is HTML and style,
-// without a script, and as wide as the page. Of more than 24 pipelines the first are shown.
+// the band from 5 to 95 % over the seeds, the median, the published value or bound where there is
+// one of that metric. The best pipeline, limits and references say so in words, not by colour
+// alone. It is HTML and style, without a script, and as wide as the page. Of more than 24 pipelines
+// the first are shown.
 //
 //   const std::string figure = overview_html(all_results, evaluation::RankedBy::kAmd);
 #ifndef SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
@@ -22,8 +23,8 @@ namespace simbench::reports {
 struct OverviewRow {
   const evaluation::Row* row = nullptr;        // of the results
   const evaluation::Series* series = nullptr;  // of the row: what is drawn
-  std::optional<double> published_ms{};
-  std::string word{};  // "best", "limit", "reference" or ""
+  std::optional<double> published_ms{};        // a value or a bound
+  std::string word{};                          // "best", "limit", "reference" or ""
 };
 
 // In their order; none if no pipeline has a value above 0.

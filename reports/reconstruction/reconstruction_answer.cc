@@ -24,6 +24,7 @@ using reconstruction::SeedReprojection;
 bool can_run(const ReprojectionRow& row) {
   evaluation::Row choice;
   choice.host_sync = row.host_sync;
+  choice.capture_alignment = row.capture_alignment;
   choice.device_time = row.device_time;
   choice.gathering = row.gathering;
   return evaluation::standing_of(choice) == RowStanding::kRunnable;

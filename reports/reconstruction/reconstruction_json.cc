@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <string>
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
@@ -11,6 +12,7 @@
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
 #include "reports/results/json.h"
+#include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
@@ -33,21 +35,22 @@ Json published_error_json(const ReprojectionRow& row) {
 }
 
 Json reprojection_row_json(const ReprojectionRow& row) {
-  return {{"pipeline", row.pipeline},
-          {"host_sync", row.host_sync},
-          {"device_time", row.device_time},
-          {"gathering", row.gathering},
-          {"mean_cm", series_json(row.mean_cm())},
-          {"std_cm", series_json(row.std_cm())},
-          {"median_cm", series_json(row.median_cm())},
-          {"p95_cm", series_json(row.p95_cm())},
-          {"desync_ms", series_json(row.desync_ms())},
-          {"sets", total_over_seeds(row, &SeedReprojection::sets)},
-          {"failed_sets", total_over_seeds(row, &SeedReprojection::failed_sets)},
-          {"missing_frames", total_over_seeds(row, &SeedReprojection::missing_frames)},
-          {"no_gathered_set_share", no_gathered_set_share(row)},
-          {"published", published_error_json(row)},
-          {"notes", row.notes}};
+  Json all = {{"pipeline", row.pipeline}, {"host_sync", row.host_sync}};
+  if (!row.capture_alignment.empty()) all["capture_alignment"] = row.capture_alignment;
+  all.update({{"device_time", row.device_time},
+              {"gathering", row.gathering},
+              {"mean_cm", series_json(row.mean_cm())},
+              {"std_cm", series_json(row.std_cm())},
+              {"median_cm", series_json(row.median_cm())},
+              {"p95_cm", series_json(row.p95_cm())},
+              {"desync_ms", series_json(row.desync_ms())},
+              {"sets", total_over_seeds(row, &SeedReprojection::sets)},
+              {"failed_sets", total_over_seeds(row, &SeedReprojection::failed_sets)},
+              {"missing_frames", total_over_seeds(row, &SeedReprojection::missing_frames)},
+              {"no_gathered_set_share", no_gathered_set_share(row)},
+              {"published", published_error_json(row)},
+              {"notes", row.notes}});
+  return all;
 }
 
 Json all_published_json(const ReconstructionResults& results) {
@@ -117,17 +120,19 @@ constexpr NamedSeries kSeries[] = {{"mean_cm", &ReprojectionRow::mean_cm},
                                    {"p95_cm", &ReprojectionRow::p95_cm},
                                    {"desync_ms", &ReprojectionRow::desync_ms}};
 
-std::string csv_header() {
-  std::string line = "pipeline,host_sync,device_time,gathering";
+std::string csv_header(bool has_alignment) {
+  std::string line = fmt::format("pipeline,host_sync,{}device_time,gathering",
+                                 has_alignment ? "capture_alignment," : "");
   for (const NamedSeries& each : kSeries) line += fmt::format(",{0},{0}_p05,{0}_p95", each.name);
   return line +
          ",sets,failed_sets,missing_frames,no_gathered_set_share,published_mean_cm,"
          "published_std_cm\n";
 }
 
-std::string reconstruction_csv_line(const ReprojectionRow& row) {
-  std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
-                                    csv_cell(row.device_time), csv_cell(row.gathering)};
+std::string reconstruction_csv_line(const ReprojectionRow& row, bool has_alignment) {
+  std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync)};
+  if (has_alignment) cells.push_back(csv_cell(row.capture_alignment));
+  cells.insert(cells.end(), {csv_cell(row.device_time), csv_cell(row.gathering)});
   for (const NamedSeries& each : kSeries) {
     const Series series = (row.*each.series)();
     cells.insert(cells.end(),
@@ -168,8 +173,11 @@ std::string reconstruction_json(const ReconstructionResults& results) {
 }
 
 std::string reconstruction_csv(const ReconstructionResults& results) {
-  std::string text = csv_header();
-  for (const ReprojectionRow& row : results.rows) text += reconstruction_csv_line(row);
+  const bool has_alignment = has_capture_alignment(results.rows);
+  std::string text = csv_header(has_alignment);
+  for (const ReprojectionRow& row : results.rows) {
+    text += reconstruction_csv_line(row, has_alignment);
+  }
   return text;
 }
 

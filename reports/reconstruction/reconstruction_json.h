@@ -4,10 +4,11 @@
 // "values": [in seed order]}. Only /performance differs between equal runs.
 //
 //   {"schema_version", "scenario", "version", "commit", "first_seed", "seeds", "frames",
-//    "rows": [{"pipeline", "host_sync", "device_time", "gathering", "mean_cm": series, "std_cm",
-//      "median_cm", "p95_cm", "desync_ms": likewise, "sets", "failed_sets", "missing_frames": over
-//      all seeds, "no_gathered_set_share", "published": null or {"mean_cm", "std_cm",
-//      "mean_inside", "std_inside" (null: too few seeds to tell)}, "notes"}],
+//    "rows": [{"pipeline", "host_sync", "capture_alignment" (only if something steers the
+//      exposures), "device_time", "gathering", "mean_cm": series, "std_cm", "median_cm", "p95_cm",
+//      "desync_ms": likewise, "sets", "failed_sets", "missing_frames": over all seeds,
+//      "no_gathered_set_share", "published": null or {"mean_cm", "std_cm", "mean_inside",
+//      "std_inside" (null: too few seeds to tell)}, "notes"}],
 //    "published": {pipeline: {"mean_cm", "std_cm"}},
 //    "published_ratio": null or {"worst", "best", "ratio": series, "published"},
 //    "curve": [{"speed_m_per_s", "speed_factor", "desync_ms", "mean_cm": series, "std_cm"}],
@@ -17,7 +18,8 @@
 //      "points": like curve},
 //    "notes": [...], "performance": {"wall_s", "seconds_per_set"}}
 //
-// CSV: a line for each pipeline, medians and bands, the same names.
+// CSV: a line for each pipeline, medians and bands, the same names; a column capture_alignment if
+// something steers the exposures of a row.
 #ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_JSON_H_
 #define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_JSON_H_
 

@@ -9,6 +9,7 @@
 
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/results_document.h"
 
 namespace simbench::reports {
 namespace {
@@ -45,12 +46,6 @@ void add_cells(CsvColumns form, const Row& row, std::vector<std::string>& cells)
   }
 }
 
-// Whether there is a column of what steers the exposures.
-bool has_capture_alignment(const evaluation::Results& results) {
-  return std::ranges::any_of(results.rows,
-                             [](const Row& row) { return !row.capture_alignment.empty(); });
-}
-
 std::vector<std::string> header(bool has_alignment) {
   std::vector<std::string> names = {"pipeline", "host_sync"};
   if (has_alignment) names.emplace_back("capture_alignment");
@@ -85,6 +80,19 @@ std::vector<std::string> published_cells(const Row& row) {
           flag(published.rmdv_attainable)};
 }
 
+// "amd_ms at_most 2.5 holds; rmdv_ms value 1.34"; without a verdict: too few seeds to tell.
+std::string figures_cell(const evaluation::Results& results, const Row& row) {
+  std::vector<std::string> figures;
+  for (const evaluation::FigureComparison& compared : results.published_figures) {
+    const scenarios::PublishedFigure& figure = compared.figure;
+    if (figure.pipeline != row.pipeline) continue;
+    const std::string_view verdict = evaluation::verdict_word(compared.verdict);
+    figures.push_back(fmt::format("{} {} {}{}{}", figure.metric, figure.number_name(),
+                                  figure.number(), verdict.empty() ? "" : " ", verdict));
+  }
+  return csv_cell(fmt::format("{}", fmt::join(figures, "; ")));
+}
+
 // The end of a header or of a line: with a column of the changes of a changed world.
 struct LineEnds {
   explicit LineEnds(const scenarios::Derivation& derivation) {
@@ -115,8 +123,10 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results) || !note_lines(results).empty();
-  const bool has_alignment = has_capture_alignment(results);
+  const bool has_alignment = has_capture_alignment(results.rows);
   std::vector<std::string> names = header(has_alignment);
+  const bool has_figures = !results.published_figures.empty();
+  if (has_figures) names.emplace_back("published_figures");
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
   const std::string changed = scenarios::changed_text(results.derivation);
   if (!changed.empty()) names.emplace_back("changed");
@@ -131,6 +141,7 @@ std::string csv(const evaluation::Results& results) {
     cells.insert(cells.end(), published.begin(), published.end());
     add_cells(CsvColumns::kValueAtEnd, row, cells);
     cells.push_back(std::to_string(evaluation::scored_seeds(row)));
+    if (has_figures) cells.push_back(figures_cell(results, row));
     if (real) {
       cells.insert(cells.end(),
                    {ground_truth_name(row.ground_truth), row.verified() ? "verified" : "unverified",

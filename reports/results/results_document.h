@@ -64,13 +64,18 @@ std::string capture_alignment_of(const AnyRow& row) {
   return "";
 }
 
+// Whether something steers the exposures of one of the rows.
+template <class Rows>
+bool has_capture_alignment(const Rows& rows) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const auto& row) { return !capture_alignment_of(row).empty(); });
+}
+
 // The stages of each pipeline, for rows of any kind that name them.
 template <class Rows>
 Block stages_block(const Rows& rows) {
-  const bool is_steered = std::any_of(
-      rows.begin(), rows.end(), [](const auto& row) { return !capture_alignment_of(row).empty(); });
   Block block{.heading =
-                  is_steered
+                  has_capture_alignment(rows)
                       ? "Pipelines = host_sync [+ capture_alignment] + device_time + gathering"
                       : "Pipelines = host_sync + device_time + gathering"};
   for (const auto& row : rows) {

@@ -124,8 +124,11 @@ TEST_F(AdHocPipelines, WrongOnesAreRefused) {
   EXPECT_THAT(refusal("two_way_hull+hull_30+yoon2021"), HasSubstr("did you mean hull_300?"));
   EXPECT_THAT(refusal("two_way_hull+hull_300+genlok"), HasSubstr("did you mean genlock?"));
   EXPECT_THAT(refusal("two_way_hull+hull_300"),
-              HasSubstr("found 2 parts, allowed: host_sync or host_sync+device_time+gathering"));
-  EXPECT_THAT(refusal("a+b+c+d"), HasSubstr("found 4 parts"));
+              HasSubstr("found 2 parts, allowed: host_sync or "
+                        "host_sync[+capture_alignment]+device_time+gathering"));
+  EXPECT_THAT(refusal("a+b+c+d+e"), HasSubstr("found 5 parts"));
+  EXPECT_THAT(refusal("two_way_hull+phase_rat+hull_300+yoon2021"),
+              HasSubstr("found \"phase_rat\", did you mean phase_rate?"));
   EXPECT_THAT(refusal("two_way_hull++yoon2021"), HasSubstr("found an empty part"));
   EXPECT_THAT(refusal("+hull_300+yoon2021"), HasSubstr("found an empty part"));
   EXPECT_THAT(refusal(std::string(kStated) + "," + kStated), HasSubstr("is named twice"));

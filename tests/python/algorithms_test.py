@@ -21,6 +21,7 @@ needs_numpy = unittest.skipIf(numpy is None, "stamp_all() needs NumPy")
 
 WORLD = "3cam_1host_30fps"
 RIG = "18cam_6host_45fps_lan"
+CABLELESS = "18cam_6host_30fps_without_trigger"
 EXAMPLE = os.path.join(command.SOURCE, "examples", "my_algorithm.py")
 # `simbench run --python` starts the interpreter that runs this test.
 ENVIRONMENT = {"SIMBENCH_PYTHON": sys.executable}
@@ -41,7 +42,7 @@ def values(result, metric):
 def numbers(result, pipeline):
     """All that a row has been given as scores, but not the algorithms' names."""
     row = row_of(result, pipeline)
-    names = ("pipeline", "host_sync", "device_time", "gathering", "offline")
+    names = ("pipeline", "host_sync", "capture_alignment", "device_time", "gathering", "offline")
     return repr({key: value for key, value in row.items() if key not in names})
 
 
@@ -150,6 +151,148 @@ class SameRuleTest(unittest.TestCase):
                         RIG, seeds=2)
         for errors_ms in values(result, "host_error_ms"):
             self.assertLess(max(errors_ms), 1)
+
+
+@mock.patch("warnings.warn")
+class CaptureAlignmentTest(unittest.TestCase):
+    # Exposures are steered from the first of the 3 s before what is evaluated.
+    WORLD = {"/timeline/warm_up_ms": 3000, "/timeline/frames": 120}
+
+    def scores(self, alignments, seeds=2, **options):
+        """Pipelines that differ in the alignment alone."""
+        pipelines = [
+            simbench.pipeline(str(place), base="phase_rate", capture_alignment=alignment)
+            for place, alignment in enumerate(alignments)
+        ]
+        return scores(pipelines, CABLELESS, seeds, set=self.WORLD, **options)
+
+    def test_one_that_does_nothing_is_free_run(self, _):
+        seen = set()
+
+        @simbench.capture_alignment("test_idle")
+        async def idle(host, camera, settings):
+            seen.add((host.id, camera.number))
+
+        result = self.scores([idle, "free_run"])
+        self.assertEqual(numbers(result, "0"), numbers(result, "1"))
+        self.assertEqual(seen, {(camera // 3, camera) for camera in range(18)})
+        self.assertEqual(
+            [row["capture_alignment"] for row in result.data["rows"]], ["test_idle", "free_run"]
+        )
+        self.assertEqual(list(result.table["capture_alignment"]), ["test_idle", "free_run"])
+
+    def test_frames_of_another_length_move_the_exposures(self, _):
+        @simbench.capture_alignment("test_grid", dead_band_us=100)
+        async def grid(host, camera, settings):
+            length, step = camera.frame_length_ns, camera.granularity_ns
+            assert camera.shortest_ns < length < camera.longest_ns
+            assert length % step == 0 and "adjust_frame" in camera.controls
+            while True:
+                exposure = await camera.next_frame()
+                assert exposure.exposure_ns > 0
+                late = (exposure.exposed_ns + length // 2) % length - length // 2
+                is_aligned = abs(late) < settings.dead_band_us * 1e3
+                if exposure.settled:
+                    camera.report(is_aligned)
+                    if not is_aligned:
+                        by = min(max(-late, camera.shortest_ns - length), camera.longest_ns - length)
+                        assert await camera.adjust_frame(by)
+
+        result = self.scores([grid, "free_run"])
+        steered, free = values(result, "exposure_spread_median_ms")
+        # Each within the dead band and 1 s of 40 ppm.
+        self.assertLess(max(steered), 0.3)
+        self.assertGreater(min(free), 10)
+        self.assertEqual([row["wrong_locks"]["values"] for row in result.data["rows"]][0], [0, 0])
+        columns = result.table
+        self.assertEqual(
+            columns["exposure_spread_median_ms"][0],
+            row_of(result, "0")["exposure_spread_median_ms"]["median"],
+        )
+        self.assertTrue((columns["aligned_1_ms_s"][0], columns["wrong_locks"][0]) >= (0, 0))
+        again = self.scores([grid, "free_run"], jobs=2)
+        self.assertEqual(numbers(result, "0"), numbers(again, "0"))
+
+    def test_what_a_camera_refuses_is_false(self, _):
+        refused = []
+
+        @simbench.capture_alignment("test_refused")
+        async def refuse(host, camera, settings):
+            refused.append(await camera.set_frame_length(camera.longest_ns + 10**9))
+            refused.append(await camera.set_frame_length(camera.frame_length_ns))
+
+        self.scores([refuse], seeds=1)
+        self.assertEqual(sorted(refused), [False] * 18 + [True] * 18)
+
+    def test_datagrams_go_beside_those_of_host_sync(self, _):
+        heard = []
+
+        @simbench.capture_alignment("test_messages")
+        async def tell(host, camera, settings):
+            if camera.number == 0:
+                for slave in range(1, 6):
+                    await host.channel(slave).send(b"begin")
+            elif camera.number % 3 == 0:
+                heard.append((await host.channel(0).receive()).bytes)
+
+        self.scores([tell], seeds=1)
+        self.assertEqual(heard, [b"begin"] * 5)
+
+    def test_a_base_may_lose_its_alignment(self, _):
+        tree = simbench.pipeline("tree", base="phase_rate", capture_alignment="")
+        result = scores([tree], CABLELESS, 1, set=self.WORLD)
+        self.assertNotIn("capture_alignment", row_of(result, "tree"))
+        self.assertLess(values(result, "exposure_spread_median_ms")[0][0], 0.01)
+
+    def test_mistakes(self, _):
+        async def sets(host, camera, settings):
+            await host.clock.step(5)
+
+        async def fails(host, camera, settings):
+            host.failed("why")
+
+        async def stream(host, camera, settings):
+            await host.channel(1 if host.id == 0 else 0, stream=True).send(b"")
+
+        async def raises(host, camera, settings):
+            await camera.next_frame()
+            raise KeyError("lost")
+
+        for function, text in ((sets, "sets no clock"), (fails, r"camera\.report\(\)"),
+                               (stream, "allowed: of a capture_alignment datagrams"),
+                               (raises, "KeyError: 'lost'")):
+            simbench.capture_alignment("test_mistake")(function)
+            with self.subTest(text), self.assertRaisesRegex(simbench.InputError, text) as raised:
+                self.scores(["test_mistake"], seeds=1)
+            self.assertIn("algorithms_test.py:", str(raised.exception))
+        with self.assertRaisesRegex(TypeError, "capture_alignment x: found .*async def"):
+            simbench.capture_alignment("x")(lambda host, camera, settings: None)
+        with self.assertRaisesRegex(TypeError, r"host, camera, settings\) cannot be called"):
+
+            @simbench.capture_alignment("x")
+            async def short(host, settings):
+                pass
+
+    def test_a_world_without_controls_is_refused(self, _):
+        @simbench.capture_alignment("test_needs")
+        async def needs(host, camera, settings):
+            pass
+
+        mine = simbench.pipeline("mine", base="oracle", capture_alignment=needs)
+        with self.assertRaisesRegex(simbench.InputError, "cameras whose frames can be controlled"):
+            scores([mine], RIG)
+
+    def test_the_example_aligns(self, _):
+        with mock.patch.dict(os.environ, ENVIRONMENT):
+            text = command.simbench(
+                "run", "--python", EXAMPLE, "--scenario", CABLELESS, "--seeds", "1",
+                "--pipelines", "two_way_hull+to_the_grid+two_way_poll_calibrated+yoon2021",
+                "--format", "csv",
+            )  # fmt: skip
+        header, line = (row.split(",") for row in text.splitlines())
+        row = dict(zip(header, line))
+        self.assertEqual(row["capture_alignment"], "to_the_grid")
+        self.assertLess(float(row["exposure_spread_median_ms"]), 0.3)
 
 
 class ParametersTest(unittest.TestCase):
@@ -345,6 +488,18 @@ class ErrorsTest(unittest.TestCase):
                 scores(["test_wrong_sync+raw_arrival+yoon2021"], RIG, seeds=1)
             self.assertIn("algorithms_test.py:", str(raised.exception))
             self.assertIn("seed 1", str(raised.exception))
+
+
+    def test_servers_that_all_go_wrong_at_once(self):
+        async def serve(host, client, settings):
+            raise KeyError("no server")
+
+        @simbench.host_sync("test_wrong_server", server=serve)
+        async def follow(host, settings):
+            await host.sleep_for(5)
+
+        with self.assertRaisesRegex(simbench.InputError, "serve .*KeyError: 'no server'"):
+            scores(["test_wrong_server+raw_arrival+yoon2021"], RIG, seeds=1)
 
 
 class ThreadsTest(unittest.TestCase):

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <variant>
 
+#include "tests/nonempty.h"
 #include "tests/scenarios/support.h"
 #include "tests/scratch_folder.h"
 
@@ -13,6 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::StartsWith;
 
 // A figure of a pipeline with these further members, on a line of its own.
 std::string figure_of(const std::string& pipeline, const std::string& members) {
@@ -151,6 +154,30 @@ TEST(PublishedFigures, OfTheAlignmentScenarios) {
     EXPECT_EQ(figure.metric, stated.metric);
     EXPECT_EQ(figure.at_most, stated.at_most);
   }
+}
+
+// Section 6.
+TEST(PublishedFigures, OfTheGlassesAreOfTheirClocks) {
+  const Scenario scenario = load_scenario("2glasses_wifi_30fps");
+  ASSERT_EQ(scenario.published_figures.size(), 2U);
+  for (const PublishedFigure& figure : nonempty(scenario.published_figures)) {
+    EXPECT_THAT(figure.pipeline, StartsWith("ticsync"));
+    EXPECT_EQ(figure.metric, "host_error_ms");
+    EXPECT_EQ(figure.at_most, 1);
+  }
+  EXPECT_EQ(std::get<double>(scenario.algorithms.at("two_way").at("warm_up_s")), 39);
+}
+
+// Section 5: nobody shall take the agreement for a test.
+TEST(PublishedFigures, OfTheLedRigIsCalledAFit) {
+  const Scenario scenario = load_scenario("25cam_led_30fps");
+  ASSERT_EQ(scenario.published_figures.size(), 1U);
+  const PublishedFigure& figure = scenario.published_figures.front();
+  EXPECT_EQ(figure.pipeline, "rocsync_led.hardware_sync");
+  EXPECT_EQ(figure.metric, "rmdv_ms");
+  EXPECT_EQ(figure.value, 1.34);
+  EXPECT_THAT(figure.conditions, HasSubstr("A fit, no test"));
+  EXPECT_THAT(figure.source, HasSubstr("fitted"));
 }
 
 }  // namespace

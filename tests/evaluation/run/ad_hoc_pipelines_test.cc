@@ -41,7 +41,29 @@ TEST(AdHocPipelines, AHostSyncAloneIsOneOfClocks) {
   const nlohmann::json pipeline = nlohmann::json::parse(overrides[0].value);
   EXPECT_EQ(pipeline["name"], "two_way_hull");
   EXPECT_EQ(pipeline["host_sync"], "two_way_hull");
-  EXPECT_THROW(with_ad_hoc_pipelines(kScenario, {}, {"a+b"}, AdHoc::kHostSyncToo), InputError);
+  EXPECT_FALSE(pipeline.contains("capture_alignment"));
+  for (const char* wrong : {"a+b", "a+b+c+d+e", "a+b++d"}) {
+    EXPECT_THROW(with_ad_hoc_pipelines(kScenario, {}, {wrong}, AdHoc::kHostSyncToo), InputError);
+  }
+}
+
+TEST(AdHocPipelines, FourPartsSteerTheExposures) {
+  const std::vector<std::string> names = {"oracle+phase_rate+hull_300+yoon2021", "oracle"};
+  constexpr const char* kPhones = "5phone_wifi_30fps";
+  const scenarios::Scenario scenario = scenarios::load_scenario(
+      kPhones, with_ad_hoc_pipelines(kPhones, {}, names, AdHoc::kHostSyncToo));
+  const std::vector<PipelineChoice> chosen = choose_pipelines(scenario, names);
+  EXPECT_EQ(chosen[0].host_sync.info.name, "oracle");
+  EXPECT_EQ(chosen[0].capture_alignment.info.name, "phase_rate");
+  EXPECT_EQ(chosen[0].device_time.info.name, "hull_300");
+  EXPECT_EQ(chosen[0].gathering.info.name, "yoon2021");
+}
+
+TEST(AdHocPipelines, AHostSyncAloneHasTheFirstPipelinesAlignment) {
+  constexpr const char* kPhones = "5phone_wifi_30fps";
+  const auto overrides = with_ad_hoc_pipelines(kPhones, {}, {"chrony"}, AdHoc::kHostSyncToo);
+  ASSERT_EQ(overrides.size(), 1U);
+  EXPECT_EQ(nlohmann::json::parse(overrides[0].value)["capture_alignment"], "libsoftwaresync");
 }
 
 }  // namespace

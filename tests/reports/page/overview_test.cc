@@ -3,6 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/nonempty.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
@@ -20,6 +26,23 @@ TEST(Overview, HasARowPerPipelineInOrder) {
   EXPECT_LT(best, other);
   EXPECT_THAT(html, HasSubstr("title=\"published: 2.44 ms\""));
   EXPECT_THAT(html, HasSubstr("1 ms</span>"));
+}
+
+TEST(Overview, ABoundOfTheRankedMetricIsADiamond) {
+  evaluation::Results results = sample_figure_results();
+  for (evaluation::Row& row : results.rows) row.published.reset();
+  const std::vector<OverviewRow> rows = overview_rows(results, RankedBy::kAmd);
+  const auto published = [&rows](const std::string& pipeline) {
+    const auto found =
+        std::ranges::find(rows, pipeline, [](const OverviewRow& row) { return row.row->pipeline; });
+    return found == rows.end() ? std::nullopt : found->published_ms;
+  };
+  EXPECT_EQ(published("yoon2021_both"), 2.44);
+  EXPECT_EQ(published("oracle"), std::nullopt);
+  EXPECT_THAT(overview_html(results, RankedBy::kAmd), HasSubstr("Diamonds"));
+  for (const OverviewRow& row : nonempty(overview_rows(results, RankedBy::kAbsoluteError))) {
+    EXPECT_FALSE(row.published_ms.has_value());
+  }
 }
 
 TEST(Overview, EscapesNames) {

@@ -28,6 +28,14 @@ TEST(ReconstructionAnswer, SaysWhichIsBestAndHowFarApartHostsMayBe) {
   EXPECT_THAT(text, HasSubstr("3 seeds say little about other worlds"));
 }
 
+TEST(ReconstructionAnswer, ARowWhoseExposuresNeedTheTruthIsNotTheBest) {
+  auto results = sample_reconstruction();
+  for (auto& row : results.rows) {
+    if (row.pipeline == "yoon2021_both") row.capture_alignment = "oracle";
+  }
+  EXPECT_THAT(reconstruction_text(results), testing::Not(StartsWith("yoon2021_both gives")));
+}
+
 TEST(ReconstructionAnswer, WithoutRowsThereIsNone) {
   EXPECT_EQ(reconstruction_text({}), "No pipeline that a rig can run was reconstructed.");
 }

@@ -169,5 +169,21 @@ TEST(ReconstructionCsv, HasALineForEachPipeline) {
   EXPECT_THAT(text, HasSubstr(",20,10,0,0,,\n"));
 }
 
+TEST(ReconstructionStages, NameWhatSteersTheExposures) {
+  auto results = sample_reconstruction();
+  EXPECT_FALSE(reconstruction_as_json()["rows"][0].contains("capture_alignment"));
+  results.rows[1].capture_alignment = "phase_rate";
+  const Json root = Json::parse(reconstruction_json(results));
+  EXPECT_FALSE(root["rows"][0].contains("capture_alignment"));
+  EXPECT_EQ(root["rows"][1]["capture_alignment"], "phase_rate");
+  const std::string csv = reconstruction_csv(results);
+  EXPECT_THAT(csv, HasSubstr("pipeline,host_sync,capture_alignment,device_time,gathering,"));
+  EXPECT_THAT(csv, HasSubstr("ntp_last_set,ntp_last_set,,regression_30,yoon2021,8,"));
+  const std::string& host_sync = results.rows[1].host_sync;
+  EXPECT_THAT(csv, HasSubstr(host_sync + ",phase_rate,regression_30,yoon2021,"));
+  EXPECT_THAT(plain(reconstruction_document(results)),
+              HasSubstr(host_sync + " + phase_rate + regression_30 + yoon2021"));
+}
+
 }  // namespace
 }  // namespace simbench::reports

@@ -60,6 +60,13 @@ TEST(ResultsCsv, AChangedWorldIsTheLastColumn) {
   }
 }
 
+TEST(ResultsCsv, PublishedFiguresHaveAColumn) {
+  EXPECT_THAT(csv(sample_results()), testing::Not(HasSubstr("published_figures")));
+  const std::string text = csv(sample_figure_results());
+  EXPECT_THAT(text, HasSubstr(",scored_seeds,published_figures"));
+  EXPECT_THAT(text, HasSubstr("amd_ms at_most 2.44; amd_ms at_least 3 fails"));
+}
+
 TEST(ResultsCsv, NotesOfASimulationHaveAColumn) {
   evaluation::Results results = sample_results();
   results.rows[0].notes = {"repetition 1: a clock wandered"};

@@ -113,6 +113,7 @@ const std::vector<Golden>& goldens() {
       {"leaderboard_without_cables", "align.rpi_sync", 24766, 0x6a2b6133b005c375,
        0xc7a3378272c5e99a},
       {"25cam_led_30fps", "rocsync_led", 1286, 0xf183074e01d63c3d, 0xd3a18f63ae409ba8},
+      {"2glasses_wifi_30fps", "ticsync", 16201, 0x1d27114fad684b46, 0x21e19fd47b5bec03},
       {"3cam_1host_30fps", "free_running", 355, 0x7621b8b0d8390f02, 0xf6702f4f19a31d6b},
       {"6cam_2host_30fps", "yoon2021_both", 1496, 0x33f20be7b2cbccb, 0x31908e31ef937b02},
       {"6host_lan_day", "chrony", 22790, 0x8e2ca9f0df261acc, 0x6ae62dc86818a090},

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,13 @@ KeptWorld observe(const scenarios::Scenario& scenario, HostSync* host_sync = nul
 struct Choice {
   std::string scenario;
   std::string host_sync;
+  std::string capture_alignment{};  // empty: none
 };
+
+std::unique_ptr<CaptureAlignment> alignment_of(const Choice& choice) {
+  const CaptureAlignmentEntry* entry = find_capture_alignment(choice.capture_alignment);
+  return entry == nullptr ? nullptr : entry->make(check_parameters(entry->info.parameters, {}));
+}
 
 TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
   for (const Choice& choice :
@@ -45,7 +52,8 @@ TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
                            {"18cam_6host_45fps_loss_and_reordering", "yoon2021_both"},
                            {"18cam_6host_45fps_clock_step_during_capture", "yoon2021_both"},
                            {"18cam_6host_45fps_frame_drops_10pct", "yoon2021_both"},
-                           {"9cam_3host_30fps_azure_kinect", "yoon2021_neither"}}) {
+                           {"9cam_3host_30fps_azure_kinect", "yoon2021_neither"},
+                           {"18cam_6host_30fps_without_trigger", "oracle", "phase_rate"}}) {
     SCOPED_TRACE(choice.scenario + ", " + choice.host_sync);
     const scenarios::Scenario scenario = scenarios::load_scenario(
         choice.scenario, {{"/timeline/frames", "20"}, {"/timeline/warm_up_ms", "500"}});
@@ -53,9 +61,11 @@ TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
     ASSERT_NE(entry, nullptr);
     const auto record = [&](WorldObserver* observer, WrittenRecording& written) {
       const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
+      const auto alignment = alignment_of(choice);
       return make_simulation(scenario)->record({.seed = 3,
                                                 .pipeline = choice.host_sync,
                                                 .host_sync = algorithm.get(),
+                                                .capture_alignment = alignment.get(),
                                                 .observer = observer},
                                                written);
     };
@@ -66,6 +76,8 @@ TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
     const RecordingCost cost_with = record(&observed, with);
     EXPECT_TRUE(without.text == with.text);
     EXPECT_GT(with.text.size(), 10'000U);
+    EXPECT_EQ(with.text.find("\nalignment ") != std::string::npos,
+              !choice.capture_alignment.empty());
     EXPECT_FALSE(observed.frames.empty());
     EXPECT_FALSE(observed.clocks.empty());
     EXPECT_EQ(cost_with.events, cost_without.events);

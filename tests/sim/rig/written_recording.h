@@ -43,6 +43,9 @@ class WrittenRecording final : public RecordingSink {
   void on_outcome(const SyncOutcome& o) override {
     line("outcome", o.slave, o.synchronised, o.passes, o.message);
   }
+  void on_alignment(const AlignmentReport& r) override {
+    line("alignment", r.camera, r.aligned, r.controls, r.message);
+  }
   void on_led_sighting(const LedSighting& s) override {
     line("led", s.camera, s.sensor.us, s.led_start_ns, s.led_end_ns);
   }
