@@ -101,10 +101,9 @@ TEST(FrameControl, ACameraThatStampsWithItsHostsClockHasNoneToPoll) {
 }
 
 TEST(FrameControl, FramesByTheHostsOscillatorNeedStampsByItToo) {
-  EXPECT_EQ(
-      refusal_of_set("5phone_wifi_30fps", {{"/cameras/stamp_clock", "camera"}}),
-      "5phone_wifi_30fps.json:94: /cameras/frame_control/sensor_clock: found \"host\", allowed \"camera\" where the "
-      "stamps are of the camera's own clock (/cameras/stamp_clock)");
+  EXPECT_THAT(refusal_of_set("5phone_wifi_30fps", {{"/cameras/stamp_clock", "camera"}}),
+              HasSubstr("/cameras/frame_control/sensor_clock: found \"host\", allowed \"camera\" "
+                        "where the stamps are of the camera's own clock (/cameras/stamp_clock)"));
   EXPECT_THAT(
       refusal_of_set("5phone_wifi_30fps", {{"/cameras/skew_of_camera_ppm", "[1, 2, 3, 4, 5]"}}),
       HasSubstr("/cameras/skew_of_camera_ppm=[1, 2, 3, 4, 5]: found skews, allowed none "
