@@ -19,9 +19,11 @@ FigureVerdict verdict_of_value(const Percentile& percentile) {
 }
 
 FigureVerdict verdict_of_bound(const Percentile& kept) {
-  constexpr double kLeast = 95;
-  if (kept.low >= kLeast) return FigureVerdict::kHolds;
-  if (kept.high < kLeast) return FigureVerdict::kFails;
+  constexpr double kFew = 5;
+  constexpr double kNearlyAll = 95;
+  if (kept.low >= kNearlyAll) return FigureVerdict::kHolds;
+  if (kept.high < kFew) return FigureVerdict::kFails;
+  if (kept.low >= kFew && kept.high < kNearlyAll) return FigureVerdict::kInside;
   return FigureVerdict::kTooFewSeeds;
 }
 

@@ -1,10 +1,11 @@
 // Published figures of any metric, each beside the seeds of its pipeline's row.
 //
 // A value is inside or outside the seeds as a published AMD is (Placement). A bound, such as "below
-// 250 us", is a claim about nearly every recording: it holds if at least 95 % of them keep it, as
-// far as the seeds can tell. So it holds if the whole interval of the share of the seeds that keep
-// it lies from 95 % on, and fails if all of it lies below; else the seeds are too few. That all
-// seeds keep it takes kFewestOutside of them to show.
+// 250 us", holds if at least 95 % of the seeds keep it and fails if less than 5 % do, as far as the
+// seeds can tell: by the whole interval of the share of the seeds that keep it. Where this lies
+// between 5 and 95 %, the bound is inside: many seeds keep it, and many do not. Where it contains
+// one of the limits, the seeds are too few. That all seeds keep it takes kFewestOutside of them to
+// show.
 //
 //   const scenarios::PublishedFigure claim{
 //       .pipeline = "libsoftwaresync", .metric = "exposure_spread_median_ms", .at_most = 0.25};
@@ -27,8 +28,8 @@ namespace simbench::evaluation {
 struct Row;
 
 enum class FigureVerdict : std::uint8_t {
-  kInside,  // of a value
-  kOutside,
+  kInside,
+  kOutside,  // of a value
   kHolds,  // of a bound
   kFails,
   kTooFewSeeds,

@@ -52,8 +52,9 @@ std::string median_of_figure(const Results& results, const FigureComparison& com
 std::string figures_legend() {
   return fmt::format(
       "Of a value, {} Of a bound, holds: the whole interval of the share of the seeds "
-      "that keep it lies from 95 % on; fails: all of it lies below; too few seeds: neither (holds "
-      "takes {} seeds). A world that resembles the published one is not it.",
+      "that keep it lies from 95 % on; inside: between 5 and 95 %; fails: below 5 %; too few "
+      "seeds: "
+      "none of these (holds takes {} seeds). A world that resembles the published one is not it.",
       placement_legend(), evaluation::kFewestOutside);
 }
 
