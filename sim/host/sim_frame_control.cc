@@ -75,22 +75,18 @@ Task<FrameControlReply> SimFrameControl::set_frame_length(Nanoseconds length) {
 }
 
 Task<FrameControlReply> SimFrameControl::start_at(HostTime at) {
-  const auto kind = FrameControlKind::kStartAt;
-  FrameControlReply reply = requests_.reply(kind, {});
-  if (!reply.is_accepted()) co_return reply;
   const HostTime now = host_.system_clock().read(host_.true_now());
-  if (at <= now) {
-    co_return FrameControlReply{.refused = "found a start " + std::to_string(to_ms(now - at)) +
-                                           " ms ago, allowed: one to come"};
-  }
+  std::string refused = refusal_of_start(limits(), at, now);
+  if (!refused.empty()) co_return FrameControlReply{.refused = std::move(refused)};
   RandomStream draws = control_draws(host_.world().run_seed, camera_, sent_++);
   const bool is_lost = draws.chance(model_.loss_probability);
   const Nanoseconds late = from_us(draws.normal(model_.start_jitter_sigma_us));
   if (at > now + kBeforeStart) co_await host_.sleep_until(at - kBeforeStart);
   const TrueTime due = host_.system_clock().when(at, host_.true_now());
-  if (!is_lost) host_.world().frames.steer(camera_, {.kind = kind, .at = due + late});
+  if (!is_lost)
+    host_.world().frames.steer(camera_, {.kind = FrameControlKind::kStartAt, .at = due + late});
   co_await host_.sleep_until(at);
-  co_return reply;
+  co_return FrameControlReply{};
 }
 
 }  // namespace simbench::sim
