@@ -13,6 +13,8 @@
 // would move 10 ms by less than a microsecond.
 // Complexity: O(log n) a call of the n controls that have yet to count.
 //
+//   FrameControlLimits limits;
+//   limits.granularity = Nanoseconds(1);
 //   PlayedSteering steering({.limits = limits});
 //   steering.pass(7);
 //   steering.control(FrameControlKind::kAdjustFrame, from_ms(2));

@@ -138,10 +138,10 @@ class CameraBench::Worker {
         std::unique_ptr<Camera> camera = driver_.open(place.serial);
         camera->configure(settings);
         if (settings.steering && !camera->steering()) {
-          throw CameraError(place.serial,
-                            "its frames cannot be steered, as the pipeline's capture_alignment "
-                            "needs: of real cameras none can, RealSense's SDK has no control of a "
-                            "frame's length; allowed: cameras that play a recording");
+          throw CameraError(
+              "its frames cannot be steered, as the pipeline's capture_alignment "
+              "needs: of real cameras none can, RealSense's SDK has no control of a "
+              "frame's length; allowed: cameras that play a recording");
         }
         open_.push_back({place, std::move(camera)});
       });

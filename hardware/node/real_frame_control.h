@@ -5,7 +5,7 @@
 // then at what instant the clock will show it. The other controls reach the camera at once.
 // One thread, the one that runs `context`.
 //
-//   RealFrameControl control({context, clock, host}, 3, camera->steering());
+//   RealFrameControl control({context, clock, host}, 3, camera.steering());
 //   const FrameControlReply reply = co_await control.adjust_frame(from_ms(2));
 #ifndef SIMBENCH_HARDWARE_NODE_REAL_FRAME_CONTROL_H_
 #define SIMBENCH_HARDWARE_NODE_REAL_FRAME_CONTROL_H_

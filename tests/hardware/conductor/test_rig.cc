@@ -79,7 +79,17 @@ class TickingDriver final : public CameraDriver {
   std::string serial_;
 };
 
+class NoAlignment final : public CaptureAlignment {
+ public:
+  Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }
+  Task<void> run_slave(Host&, PeerId) override { co_return; }
+};
+
 NodePipeline make_pipeline(const scenarios::Scenario&, const std::string& pipeline) {
+  if (pipeline == kAlignedPipeline) {
+    return {.host_sync = std::make_unique<NoSync>(),
+            .capture_alignment = std::make_unique<NoAlignment>()};
+  }
   if (pipeline != kTestPipeline) throw scenarios::InputError("no such pipeline: " + pipeline);
   return {.host_sync = std::make_unique<NoSync>()};
 }
