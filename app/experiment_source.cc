@@ -206,6 +206,11 @@ std::string ExperimentSource::record_cameras(std::uint64_t seed) {
 }
 
 RecordingCost ExperimentSource::record(const RecordingRequest& request, RecordingSink& sink) {
+  if (request.capture_alignment != nullptr) {
+    throw RecordingFailed(
+        "its capture_alignment moves frames away from the exposures that were played, which are "
+        "the truth here");
+  }
   const bool has_programs = runs_programs(scenario_, request.pipeline);
   if (has_programs && !options_.namespaces) {
     throw RecordingFailed("its programs need network namespaces, which are not permitted here");

@@ -20,7 +20,8 @@
 // preloaded library around the nodes' clocks, for which namespaces are needed.
 //
 // Errors: RecordingFailed for a repetition that went wrong (also a host without a clock log, or a
-// frame that was not played); others may succeed.
+// frame that was not played); others may succeed. A pipeline with a capture_alignment fails, as it
+// moves the played frames away from their truth.
 //
 //   ExperimentSource source(scenario, {.namespaces = !NetworkSandbox::enter()});
 //   source.record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = sync.get()}, scorer);

@@ -22,4 +22,10 @@ std::string refusal_of(const FrameControlLimits& limits, FrameControlKind kind,
   return "";
 }
 
+std::string refusal_of_start(const FrameControlLimits& limits, HostTime at, HostTime now) {
+  std::string refused = refusal_of(limits, FrameControlKind::kStartAt, {});
+  if (!refused.empty() || at > now) return refused;
+  return "found a start " + std::to_string(to_ms(now - at)) + " ms ago, allowed: one to come";
+}
+
 }  // namespace simbench

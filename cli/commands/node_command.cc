@@ -96,23 +96,31 @@ const char* lacking(Need need) {
       return "a GNSS receiver's pulses";
     case Need::kTriggerLine:
       return "the trigger line wired into the host";
-    case Need::kFrameControl:
-      return "cameras whose frames can be controlled";
     case Need::kTruth:
       return "the truth";
     case Need::kPolls:
     case Need::kHostStamps:
     case Need::kLedClock:
     case Need::kFrames:
+    case Need::kFrameControl:  // cameras say so themselves
       break;
   }
   return nullptr;
 }
 
-std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
+// Throws if hosts lack what the algorithm of this stage needs.
+void check_has(const std::string& pipeline, const char* stage, const AlgorithmInfo& info) {
+  for (const Need need : info.needs) {
+    if (const char* what = lacking(need)) {
+      throw scenarios::InputError(
+          fmt::format("pipeline '{}': its {} '{}' needs {}, which nodes do not have", pipeline,
+                      stage, info.name, what));
+    }
+  }
+}
+
+std::unique_ptr<HostSync> make_host_sync(const evaluation::PipelineChoice& choice,
                                          const std::string& pipeline, const NodeOptions& options) {
-  const evaluation::PipelineChoice choice =
-      evaluation::choose_pipelines(scenario, {pipeline}).front();
   if (choice.pipeline.programs && !options.programs_on.empty()) {
     return app::make_node_programs(choice.pipeline, options.programs_on,
                                    {.log_folder = options.program_log});
@@ -123,19 +131,20 @@ std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
         "on real hosts start them yourself, with host_sync \"free_running\"",
         pipeline));
   }
-  if (choice.is_steered()) {
-    throw scenarios::InputError(
-        fmt::format("pipeline '{}': its capture_alignment '{}' needs {}, which nodes do not have",
-                    pipeline, choice.capture_alignment.info.name, lacking(Need::kFrameControl)));
-  }
-  for (const Need need : choice.host_sync.info.needs) {
-    if (const char* what = lacking(need)) {
-      throw scenarios::InputError(
-          fmt::format("pipeline '{}': its host_sync '{}' needs {}, which nodes do not have",
-                      pipeline, choice.host_sync.info.name, what));
-    }
-  }
+  check_has(pipeline, "host_sync", choice.host_sync.info);
   return choice.host_sync.make(choice.host_sync_parameters);
+}
+
+hardware::NodePipeline make_pipeline(const scenarios::Scenario& scenario,
+                                     const std::string& pipeline, const NodeOptions& options) {
+  const evaluation::PipelineChoice choice =
+      evaluation::choose_pipelines(scenario, {pipeline}).front();
+  hardware::NodePipeline made{.host_sync = make_host_sync(choice, pipeline, options)};
+  if (choice.is_steered()) {
+    check_has(pipeline, "capture_alignment", choice.capture_alignment.info);
+    made.capture_alignment = choice.capture_alignment.make(choice.capture_alignment_parameters);
+  }
+  return made;
 }
 
 std::unique_ptr<hardware::NodeClock> make_clock(boost::asio::io_context& context, PeerId me,
@@ -178,7 +187,7 @@ void serve(const NodeOptions& options) {
   hardware::Node node(
       context, settings, *clock, *cameras,
       [&options](const scenarios::Scenario& scenario, const std::string& pipeline) {
-        return make_host_sync(scenario, pipeline, options);
+        return make_pipeline(scenario, pipeline, options);
       },
       log_line);
   boost::asio::signal_set signals(context, SIGINT, SIGTERM);

@@ -9,6 +9,8 @@
 //    camera, never after stop() has returned. They must not block for long.
 //  - `arrived` and `backend` are taken as early as the source allows, in monotonic time.
 //  - A running camera does not throw; it reports failures as events.
+//  - A camera whose frames can be steered has a CameraSteering. RealSense cameras have none: their
+//    SDK has no control of the length of a frame (docs/reference/capture_alignment.md).
 //
 // Errors: CameraError from open(), configure() and start(): one line that names the camera, what
 // was found, what is allowed or how to get it.
@@ -22,12 +24,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/frame_control.h"
 #include "hardware/clock/monotonic_time.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
@@ -48,6 +52,12 @@ struct CameraInfo {
   std::string connection;  // "USB 3.2", ...
 };
 
+// What a program may change about the frames of a camera, where the camera lets it.
+struct SteeringSettings {
+  FrameControlLimits limits{};
+  std::int64_t insert_stretches = 1;  // frames that get the length of an inserted one
+};
+
 // A capture's settings of each camera, from the scenario.
 struct CameraSettings {
   scenarios::SyncMode sync_mode{};
@@ -55,6 +65,7 @@ struct CameraSettings {
   double exposure_ms = 0;
   bool auto_exposure = false;
   double trigger_rate_hz = 0;
+  std::optional<SteeringSettings> steering{};  // nothing: its frames stay as they are
 };
 
 struct CameraFrame {
@@ -85,6 +96,21 @@ struct CameraEvent {
 using FrameHandler = std::function<void(const CameraFrame&)>;
 using CameraEventHandler = std::function<void(const CameraEvent&)>;
 
+// The controls of the frames of one camera (algorithms/ports/frame_control.h says what they do).
+// Any thread. It may outlive its camera; a camera that does not run refuses all of them.
+class CameraSteering {
+ public:
+  virtual ~CameraSteering() = default;
+  virtual const FrameControlLimits& limits() const = 0;
+  // All kinds but kStartAt. `value`: a length, or by how much a frame is longer (kAdjustFrame).
+  virtual FrameControlReply control(FrameControlKind kind, Nanoseconds value) = 0;
+  // The next exposure begins then.
+  virtual FrameControlReply start_at(MonotonicTime at) = 0;
+};
+
+// Of the cameras that have one, by their numbers on the rig.
+using CameraSteerings = std::map<std::uint32_t, std::shared_ptr<CameraSteering>>;
+
 class Camera {
  public:
   virtual ~Camera() = default;
@@ -94,6 +120,8 @@ class Camera {
   virtual void start(FrameHandler on_frame, CameraEventHandler on_event) = 0;
   // Idempotent; no handler runs after it.
   virtual void stop() = 0;
+  // Null if its frames cannot be steered, or its settings do not say how.
+  virtual std::shared_ptr<CameraSteering> steering() { return nullptr; }
 };
 
 class CameraDriver {

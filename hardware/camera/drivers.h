@@ -12,7 +12,7 @@
 // Errors: CameraError for an unusable recording, and for a real camera without librealsense2.
 //
 //   const auto cameras = make_camera_driver(rig, me);
-//   Node node(context, settings, clock, *cameras, make_host_sync, log);
+//   Node node(context, settings, clock, *cameras, make_pipeline, log);
 #ifndef SIMBENCH_HARDWARE_CAMERA_DRIVERS_H_
 #define SIMBENCH_HARDWARE_CAMERA_DRIVERS_H_
 

@@ -18,6 +18,7 @@
 #include <thread>
 #include <utility>
 
+#include "hardware/camera/played_steering.h"
 #include "hardware/camera/stream_watch.h"
 #include "hardware/descriptor.h"
 
@@ -31,6 +32,7 @@ constexpr Nanoseconds kLongestSleep = std::chrono::milliseconds(250);
 constexpr Nanoseconds kOldTrigger = std::chrono::seconds(1);
 constexpr Nanoseconds kFarTrigger = std::chrono::hours(1);
 constexpr int kUnreadableReported = 50;
+constexpr const char* kNotPlaying = "the camera does not play";
 
 // One camera while it is started.
 struct RecordedPlay {
@@ -42,12 +44,14 @@ struct RecordedPlay {
   FrameHandler on_frame;
   CameraEventHandler on_event;
   StreamWatch watch{CameraSettings{}, true};
+  std::optional<SteeringSettings> steered{};  // nothing: its frames stay as they are
 
   State state = State::kWaiting;
   MonotonicTime started{};
   MonotonicTime zero{};  // T0, while playing
   std::size_t next = 0;  // frame
-  int unreadable = 0;    // times in a row that the trigger file held no instant
+  std::optional<PlayedSteering> steering;
+  int unreadable = 0;  // times in a row that the trigger file held no instant
 };
 
 struct TriggerFile {
@@ -82,6 +86,8 @@ void begin(RecordedPlay& play, MonotonicTime zero) {
   play.zero = zero;
   play.next = 0;
   play.watch.start(zero);
+  play.steering.reset();
+  if (play.steered) play.steering.emplace(*play.steered);
 }
 
 void report_unreadable(RecordedPlay& play, const TriggerFile& file, MonotonicTime now) {
@@ -107,7 +113,29 @@ void apply(RecordedPlay& play, const TriggerFile& file, MonotonicTime now) {
   if (is_new && *file.zero >= play.started - kOldTrigger) begin(play, *file.zero);
 }
 
-CameraFrame frame_at(const PlayedFrame& played, MonotonicTime arrived) {
+Nanoseconds shift_of(const RecordedPlay& play) {
+  return play.steering ? play.steering->shift(play.camera->frames[play.next].counter)
+                       : Nanoseconds(0);
+}
+
+MonotonicTime due(const RecordedPlay& play) {
+  return play.zero + Nanoseconds(play.camera->frames[play.next].due_ns) + shift_of(play);
+}
+
+void steer(CameraFrame& frame, const PlayedSteering& steering) {
+  const auto us = std::chrono::round<Microseconds>(steering.shift(frame.counter)).count();
+  frame.sensor.us += static_cast<std::uint32_t>(us);
+  frame.frame.us += static_cast<std::uint32_t>(us);
+  const std::optional<Nanoseconds> exposure = steering.exposure(frame.counter);
+  if (!exposure) return;
+  frame.exposure_us =
+      static_cast<std::uint32_t>(std::chrono::round<Microseconds>(*exposure).count());
+}
+
+// The next frame, which is due.
+CameraFrame next_frame(RecordedPlay& play) {
+  const MonotonicTime arrived = due(play);
+  const PlayedFrame& played = play.camera->frames[play.next++];
   CameraFrame frame{.stream = played.stream,
                     .domain = played.domain,
                     .counter = played.counter,
@@ -119,11 +147,11 @@ CameraFrame frame_at(const PlayedFrame& played, MonotonicTime arrived) {
   if (played.backend_lead_ns != kNoBackend) {
     frame.backend = arrived - Nanoseconds(played.backend_lead_ns);
   }
+  if (play.steering) {
+    steer(frame, *play.steering);
+    play.steering->pass(frame.counter);
+  }
   return frame;
-}
-
-MonotonicTime due(const RecordedPlay& play) {
-  return play.zero + Nanoseconds(play.camera->frames[play.next].due_ns);
 }
 
 bool is_played(const RecordedPlay& play) {
@@ -168,8 +196,13 @@ class RecordedPlayer {
   void add(RecordedPlay& play);
   // Does nothing if it is not there.
   void remove(RecordedPlay& play);
+  // Controls of its frames; refused while it does not play.
+  FrameControlReply control(RecordedPlay& play, FrameControlKind kind, Nanoseconds value);
+  FrameControlReply start_at(RecordedPlay& play, MonotonicTime at);
 
  private:
+  // Moves on to the frame that a control finds; false: there is none.
+  bool finds_frame(RecordedPlay& play);
   void run();
   // Plays what is due; returns when to wake up.
   MonotonicTime turn(MonotonicTime now);
@@ -215,6 +248,31 @@ void RecordedPlayer::remove(RecordedPlay& play) {
   std::erase(plays_, &play);
 }
 
+bool RecordedPlayer::finds_frame(RecordedPlay& play) {
+  const bool is_started = std::find(plays_.begin(), plays_.end(), &play) != plays_.end();
+  if (!is_started || play.state != RecordedPlay::State::kPlaying) return false;
+  skip(play);
+  return play.steering && play.state == RecordedPlay::State::kPlaying;
+}
+
+FrameControlReply RecordedPlayer::control(RecordedPlay& play, FrameControlKind kind,
+                                          Nanoseconds value) {
+  const std::lock_guard lock(mutex_);
+  if (!finds_frame(play)) return {.refused = kNotPlaying};
+  return play.steering->control(kind, value);
+}
+
+FrameControlReply RecordedPlayer::start_at(RecordedPlay& play, MonotonicTime at) {
+  const std::lock_guard lock(mutex_);
+  if (!finds_frame(play)) return {.refused = kNotPlaying};
+  const PlayedFrame& frame = play.camera->frames[play.next];
+  const MonotonicTime wanted = at + Nanoseconds(frame.exposure_lead_ns);
+  const FrameControlReply reply =
+      play.steering->restart(frame.counter, wanted - (play.zero + Nanoseconds(frame.due_ns)));
+  changed_.notify_one();
+  return reply;
+}
+
 void RecordedPlayer::look_at_triggers(MonotonicTime now) {
   waiting_ = false;
   const std::string* path = nullptr;
@@ -234,8 +292,7 @@ MonotonicTime RecordedPlayer::turn(MonotonicTime now) {
   if (now >= next_look_) look_at_triggers(now);
   RecordedPlay* play = earliest(plays_);
   if (play != nullptr && due(*play) <= now) {
-    const MonotonicTime arrived = due(*play);
-    const CameraFrame frame = frame_at(play->camera->frames[play->next++], arrived);
+    const CameraFrame frame = next_frame(*play);
     play->on_frame(frame);
     play->watch.on_frame(frame, play->on_event);
     return now;
@@ -265,14 +322,33 @@ void RecordedPlayer::run() {
 
 namespace {
 
+class RecordedSteering final : public CameraSteering {
+ public:
+  RecordedSteering(std::shared_ptr<RecordedPlayer> player, std::shared_ptr<RecordedPlay> play)
+      : player_(std::move(player)), play_(std::move(play)), limits_(play_->steered->limits) {}
+
+  const FrameControlLimits& limits() const override { return limits_; }
+  FrameControlReply control(FrameControlKind kind, Nanoseconds value) override {
+    return player_->control(*play_, kind, value);
+  }
+  FrameControlReply start_at(MonotonicTime at) override { return player_->start_at(*play_, at); }
+
+ private:
+  std::shared_ptr<RecordedPlayer> player_;
+  std::shared_ptr<RecordedPlay> play_;
+  FrameControlLimits limits_;
+};
+
 class RecordedCamera final : public Camera {
  public:
   RecordedCamera(CameraInfo info, std::string trigger_file,
                  std::shared_ptr<const PlayedCamera> played, std::shared_ptr<RecordedPlayer> player)
-      : info_(std::move(info)), player_(std::move(player)) {
-    play_.trigger_file = std::move(trigger_file);
-    play_.camera = std::move(played);
-    play_.wanted = {true, true};
+      : info_(std::move(info)),
+        player_(std::move(player)),
+        play_(std::make_shared<RecordedPlay>()) {
+    play_->trigger_file = std::move(trigger_file);
+    play_->camera = std::move(played);
+    play_->wanted = {true, true};
   }
   ~RecordedCamera() override { stop(); }
   RecordedCamera(const RecordedCamera&) = delete;
@@ -284,7 +360,7 @@ class RecordedCamera final : public Camera {
     if (started_) throw CameraError(info_.serial, "configured while it is started");
     std::array<bool, 2> wanted = {};
     for (const scenarios::Stream& stream : settings.streams) {
-      const auto& frames = play_.camera->frames;
+      const auto& frames = play_->camera->frames;
       if (std::none_of(frames.begin(), frames.end(),
                        [&](const PlayedFrame& frame) { return frame.stream == stream.kind; })) {
         throw CameraError(info_.serial,
@@ -292,28 +368,41 @@ class RecordedCamera final : public Camera {
       }
       wanted[static_cast<std::size_t>(stream.kind)] = true;
     }
-    play_.wanted = wanted;
-    play_.watch = StreamWatch(settings, true);
+    play_->wanted = wanted;
+    play_->watch = StreamWatch(settings, true);
+    play_->steered = settings.steering;
+    if (!settings.steering) return;
+    const auto starts = static_cast<std::size_t>(FrameControlKind::kStartAt);
+    const auto& frames = play_->camera->frames;
+    const bool has_exposures = std::none_of(
+        frames.begin(), frames.end(),
+        [](const PlayedFrame& frame) { return frame.exposure_lead_ns == kNoExposure; });
+    play_->steered->limits.allowed[starts] =
+        settings.steering->limits.allowed[starts] && has_exposures;
   }
 
   void start(FrameHandler on_frame, CameraEventHandler on_event) override {
     if (started_) throw CameraError(info_.serial, "started twice");
-    play_.on_frame = std::move(on_frame);
-    play_.on_event = std::move(on_event);
-    player_->add(play_);
+    play_->on_frame = std::move(on_frame);
+    play_->on_event = std::move(on_event);
+    player_->add(*play_);
     started_ = true;
   }
 
   void stop() override {
-    player_->remove(play_);
+    player_->remove(*play_);
     started_ = false;
+  }
+  std::shared_ptr<CameraSteering> steering() override {
+    if (!play_->steered) return nullptr;
+    return std::make_shared<RecordedSteering>(player_, play_);
   }
 
  private:
   CameraInfo info_;
   std::shared_ptr<RecordedPlayer> player_;
   bool started_ = false;
-  RecordedPlay play_;
+  std::shared_ptr<RecordedPlay> play_;
 };
 
 }  // namespace

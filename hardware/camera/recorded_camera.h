@@ -16,12 +16,18 @@
 // Frames carry the recorded counter, exposure and device stamps. `arrived` is the instant at which
 // the frame was due, to the nanosecond, and `backend` as long before it as in the recording. The
 // frame is handed over as soon after that as this machine's timers allow: their lateness is not in
-// the stamps. Of the settings only the streams are used: the wanted ones are played, and one that
-// the recording lacks is refused.
+// the stamps. Of the settings only the streams and the steering are used: the wanted streams are
+// played, and one that the recording lacks is refused.
+//
+// Steering. Where the settings say how, frames follow the controls of CameraSteering: all of a
+// frame's stamps and its due time move alike (played_steering.h), and an inserted frame has the
+// exposure that it would have. The recording should be of cameras that ran free. Controls reach the
+// camera at once, none is lost and none is noisy; start_at() is refused where the recording does
+// not say when exposures begin, that is, without truth.
 //
 // One thread plays all cameras of a driver; it starts with the first start() and sleeps between
-// deliveries. A frame costs no allocation. Handlers must not call start() or stop() of a camera of
-// the same driver. Cameras may outlive their driver.
+// deliveries. A frame costs no allocation. Handlers must not call start(), stop() or controls of a
+// camera of the same driver. Cameras may outlive their driver.
 //
 // Errors: CameraError: those of recorded_frames.h from the constructor; an unknown serial from
 // open(); a stream that is not in the recording from configure(); a second start().

@@ -96,14 +96,16 @@ class FrameKeeper final : public RecordingSink {
       first_exposure_ = std::min(first_exposure_.value_or(exposed), exposed);
     }
     if (frame.camera >= cameras_.size() || !cameras_[frame.camera]) return;
-    cameras_[frame.camera]->frames.push_back({.due_ns = due,
-                                              .counter = frame.counter,
-                                              .exposure_us = frame.exposure_us,
-                                              .sensor = frame.sensor,
-                                              .frame = frame.frame,
-                                              .backend_lead_ns = backend_lead_ns(frame),
-                                              .stream = frame.stream,
-                                              .domain = frame.domain});
+    cameras_[frame.camera]->frames.push_back(
+        {.due_ns = due,
+         .counter = frame.counter,
+         .exposure_us = frame.exposure_us,
+         .sensor = frame.sensor,
+         .frame = frame.frame,
+         .backend_lead_ns = lead_ns((frame.arrival - frame.backend).count()),
+         .exposure_lead_ns = exposure_lead_ns(due, truth),
+         .stream = frame.stream,
+         .domain = frame.domain});
   }
   void on_pulse(const PulseTruth& /*truth*/) override {}
   void on_adjustment(const ClockAdjustment& /*adjustment*/) override {}
@@ -119,10 +121,12 @@ class FrameKeeper final : public RecordingSink {
     return nanoseconds_of(truth.mid_exposure()) + (frame.arrival_steady - truth.own_steady).count();
   }
   // A stamp that is more than two seconds off does not belong to this frame.
-  static std::int32_t backend_lead_ns(const FrameRecord& frame) {
+  static std::int32_t lead_ns(std::int64_t lead) {
     constexpr std::int64_t kLongestNs = 2'000'000'000;
-    const std::int64_t lead = (frame.arrival - frame.backend).count();
     return lead < -kLongestNs || lead > kLongestNs ? kNoBackend : static_cast<std::int32_t>(lead);
+  }
+  static std::int32_t exposure_lead_ns(std::int64_t due, const FrameTruth* truth) {
+    return truth != nullptr ? lead_ns(due - nanoseconds_of(truth->exposure_start)) : kNoExposure;
   }
 
   const Played& cameras_;

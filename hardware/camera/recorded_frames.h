@@ -3,7 +3,7 @@
 // A recording is a folder of recording/recording_folder.h (its first capture, or the one that
 // "FOLDER#PIPELINE" or "FOLDER#PIPELINE/SEED" names) or a file of
 // real cameras (bags/recorded_files.h). It is read
-// once for all its wanted cameras; only their frames are kept, 32 bytes each.
+// once for all its wanted cameras; only their frames are kept, 40 bytes each.
 //
 // Due times count from the recording's zero, which all its cameras share:
 //  - with truth, the earliest start of an exposure that a trigger pulse began. A frame is due at
@@ -30,6 +30,8 @@ namespace simbench::hardware {
 
 // Stands for the back-end stamp where a recording has none.
 inline constexpr std::int32_t kNoBackend = std::numeric_limits<std::int32_t>::max();
+// Stands for the begin of the exposure where a recording has no truth.
+inline constexpr std::int32_t kNoExposure = kNoBackend;
 
 struct PlayedFrame {
   std::int64_t due_ns = 0;  // after the recording's zero
@@ -37,7 +39,8 @@ struct PlayedFrame {
   std::uint32_t exposure_us = 0;
   DeviceStamp sensor;
   DeviceStamp frame;
-  std::int32_t backend_lead_ns = kNoBackend;  // from the back-end stamp to the arrival
+  std::int32_t backend_lead_ns = kNoBackend;    // from the back-end stamp to the arrival
+  std::int32_t exposure_lead_ns = kNoExposure;  // from the begin of the exposure to that
   StreamKind stream = StreamKind::kDepth;
   StampDomain domain = StampDomain::kHardwareClock;
 };

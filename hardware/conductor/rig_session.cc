@@ -14,6 +14,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
 #include "hardware/conductor/reply.h"
 #include "hardware/net/connect.h"
@@ -125,6 +126,10 @@ Task<void> RigSession::conduct() {
   if (request_.host_sync != nullptr &&
       request_.host_sync->initial_clocks() == InitialClocks::kMaster) {
     throw RecordingFailed("an oracle's clocks exist only in the simulator");
+  }
+  if (request_.capture_alignment != nullptr &&
+      request_.capture_alignment->steering() == Steering::kIdeal) {
+    throw RecordingFailed("an oracle's exposures exist only in the simulator");
   }
   progress(fmt::format("session {}: {}", id_, request_.pipeline));
   std::exception_ptr failure;

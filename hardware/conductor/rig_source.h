@@ -6,20 +6,23 @@
 //   2. open and set the cameras
 //   3. run the pipeline's host_sync, master and slaves, for real
 //   4. wait as the scenario says, then capture in its sync mode: genlock: trigger off, cameras on,
-//      trigger on; other triggered modes: trigger on, cameras on; free-running: cameras on
+//      trigger on; other triggered modes: trigger on, cameras on; free-running: cameras on; the
+//      nodes run the pipeline's capture_alignment, if it has one, while their cameras run
 //   5. fetch the journals meanwhile; stop the cameras when the scenario's time is over, fetch the
 //      rest, and hand all events to the sink in order of arrival
 //
 // Steps 1 and 2 need every host and every camera: a node that is not there or refuses, or a camera
-// that does, throws RecordingFailed. After that failures (a killed node, a pulled cable) stay
-// local: a host without a reply for kConductorSilence is given up for this session, with a note,
-// and its fetched frames are kept. Without any host at the end of the capture, or without the
-// master during synchronisation, record() throws RecordingFailed. Every wait has a limit. Whatever
-// happens, the sessions are ended and the trigger is left off; if that fails, it is a note.
+// that does or cannot be steered, throws RecordingFailed. After that failures (a killed node, a
+// pulled cable) stay local: a host without a reply for kConductorSilence is given up for this
+// session, with a note, and its fetched frames are kept. Without any host at the end of the
+// capture, or without the master during synchronisation, record() throws RecordingFailed. Every
+// wait has a limit. Whatever happens, the sessions are ended and the trigger is left off; if that
+// fails, it is a note.
 //
 // The sink gets frames without truth. `progress` gets a line for each step. The request's pipeline
-// is the one to run; its host_sync object only tells the kind (warm_up(), initial_clocks()), since
-// the nodes make their own. An oracle's clocks (kMaster) fail: no rig has them.
+// is the one to run; its objects only tell the kind (warm_up(), initial_clocks(), steering()),
+// since the nodes make their own. An oracle's clocks (kMaster) and exposures (kIdeal) fail: no rig
+// has them.
 //
 //   RigSource source(rig, key, scenario, settings);
 //   source.record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = sync.get()}, sink);

@@ -1,6 +1,8 @@
 #include "hardware/net/datagram.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 
 namespace simbench::hardware {
 namespace {
@@ -27,6 +29,23 @@ std::optional<DatagramHeader> parse_datagram(std::span<const std::byte> datagram
   }
   return DatagramHeader{.from = static_cast<std::uint16_t>(number_in(datagram.subspan(2, 2))),
                         .counter = number_in(datagram.subspan(4, 8))};
+}
+
+Bytes with_channel(Transport channel, std::span<const std::byte> message) {
+  const auto* const number = std::find(kDatagramChannels.begin(), kDatagramChannels.end(), channel);
+  Bytes bytes;
+  bytes.reserve(kChannelBytes + message.size());
+  bytes.push_back(static_cast<std::byte>(number - kDatagramChannels.begin()));
+  bytes.insert(bytes.end(), message.begin(), message.end());
+  return bytes;
+}
+
+std::optional<Transport> take_channel(Bytes& message) {
+  if (message.empty()) return std::nullopt;
+  const auto number = std::to_integer<std::size_t>(message.front());
+  if (number >= kDatagramChannels.size()) return std::nullopt;
+  message.erase(message.begin());
+  return kDatagramChannels[number];
 }
 
 DatagramSession::DatagramSession(const SecureStream& stream, std::uint16_t me, std::uint16_t peer)

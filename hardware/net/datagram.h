@@ -1,11 +1,12 @@
-// A datagram between two hosts: sender and counter in the clear, the message sealed.
+// A datagram between two hosts: sender and counter in the clear, channel and message sealed.
 //
 //   bytes  what
 //   0      0xd7
 //   1      kProtocolVersion, its low byte
 //   2-3    the sender's number, least significant byte first
 //   4-11   counter: the nonce, by which replays are detected
-//   12-    sealed message, kSealBytes longer than the message
+//   12     sealed from here on: the channel, a kDatagramChannels
+//   13-    the message; kSealBytes of the seal follow
 //
 // The first twelve bytes are protected by the seal. Keys come from the session of the two hosts'
 // stream, one for each direction. Pure; any bytes are safe to parse.
@@ -24,8 +25,17 @@ namespace simbench::hardware {
 
 inline constexpr std::size_t kDatagramHeaderBytes = 12;
 inline constexpr std::size_t kMaxDatagramBytes = 65507;  // what UDP over IPv4 carries
+inline constexpr std::size_t kChannelBytes = 1;
 inline constexpr std::size_t kMaxDatagramMessage =
-    kMaxDatagramBytes - kDatagramHeaderBytes - kSealBytes;
+    kMaxDatagramBytes - kDatagramHeaderBytes - kChannelBytes - kSealBytes;
+
+// Which of a pair's channels a message is for, by its number on the wire.
+inline constexpr std::array kDatagramChannels = {Transport::kDatagram, Transport::kAlignment};
+
+// A message behind its channel, as it is sealed.
+Bytes with_channel(Transport channel, std::span<const std::byte> message);
+// Takes the channel off a message; nothing if there is none of that number.
+std::optional<Transport> take_channel(Bytes& message);
 
 struct DatagramHeader {
   std::uint16_t from = 0;

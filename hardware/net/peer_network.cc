@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
@@ -45,6 +46,10 @@ constexpr Nanoseconds kLastRetry = std::chrono::seconds(1);
 constexpr Nanoseconds kSendPatience = std::chrono::seconds(1);
 constexpr std::size_t kMaxPeerMessage = 64u << 10;
 
+// By their value.
+constexpr std::array kTransports = {Transport::kStream, Transport::kDatagram,
+                                    Transport::kAlignment};
+
 constexpr std::byte kPort{0};
 constexpr std::byte kMessage{1};
 
@@ -84,7 +89,7 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
 
   // The operations of the channels.
   static Task<MessageId> send_by_stream(Self self, PeerId peer, Bytes message);
-  MessageId send_datagram(PeerId peer, const Bytes& message);
+  MessageId send_datagram(PeerId peer, Transport transport, const Bytes& message);
   static Task<std::optional<ReceivedMessage>> receive(Self self, PeerId peer, Transport transport,
                                                       SteadyTime deadline);
   static Task<std::optional<HostTime>> stream_stamp(Self self, PeerId peer, MessageId id,
@@ -97,9 +102,7 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
   // Everything about one other host.
   struct Link {
     Link(State& state, PeerId of);
-    Inbox& inbox(Transport transport) {
-      return transport == Transport::kStream ? stream_inbox : datagram_inbox;
-    }
+    Inbox& inbox(Transport transport) { return *inboxes[static_cast<std::size_t>(transport)]; }
 
     PeerId peer;
     std::shared_ptr<SecureStream> stream;  // null while the link is down
@@ -108,11 +111,9 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
     boost::asio::ip::udp::endpoint datagrams_to;
     // The source of its last authentic datagram.
     std::optional<boost::asio::ip::udp::endpoint> proven_source;
-    Inbox stream_inbox;
-    Inbox datagram_inbox;
     Notice connected;
-    std::unique_ptr<Channel> stream_channel;
-    std::unique_ptr<Channel> datagram_channel;
+    std::array<std::unique_ptr<Inbox>, kTransports.size()> inboxes;     // by Transport
+    std::array<std::unique_ptr<Channel>, kTransports.size()> channels;  // likewise
   };
 
   void bind_sockets();
@@ -161,7 +162,7 @@ class PeerNetwork::State::Channel final : public MessageChannel {
     if (transport_ == Transport::kStream) {
       return send_by_stream(state_.shared_from_this(), peer_, std::move(message));
     }
-    return send_at_once(state_.shared_from_this(), peer_, std::move(message));
+    return send_at_once(state_.shared_from_this(), peer_, transport_, std::move(message));
   }
   Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) override {
     return State::receive(state_.shared_from_this(), peer_, transport_, deadline);
@@ -178,8 +179,8 @@ class PeerNetwork::State::Channel final : public MessageChannel {
   }
 
  private:
-  static Task<MessageId> send_at_once(Self self, PeerId peer, Bytes message) {
-    co_return self->send_datagram(peer, message);
+  static Task<MessageId> send_at_once(Self self, PeerId peer, Transport transport, Bytes message) {
+    co_return self->send_datagram(peer, transport, message);
   }
 
   State& state_;
@@ -188,12 +189,12 @@ class PeerNetwork::State::Channel final : public MessageChannel {
 };
 
 PeerNetwork::State::Link::Link(State& state, PeerId of)
-    : peer(of),
-      stream_inbox(state.context_.get_executor()),
-      datagram_inbox(state.context_.get_executor()),
-      connected(state.context_.get_executor()),
-      stream_channel(std::make_unique<Channel>(state, of, Transport::kStream)),
-      datagram_channel(std::make_unique<Channel>(state, of, Transport::kDatagram)) {}
+    : peer(of), connected(state.context_.get_executor()) {
+  for (std::size_t i = 0; i < kTransports.size(); ++i) {
+    inboxes[i] = std::make_unique<Inbox>(state.context_.get_executor());
+    channels[i] = std::make_unique<Channel>(state, of, kTransports[i]);
+  }
+}
 
 PeerNetwork::State::State(boost::asio::io_context& context, PeerNetworkSettings settings,
                           NodeClock& clock)
@@ -262,8 +263,7 @@ void PeerNetwork::State::stop() {
   for (const auto& link : links_) {
     if (!link) continue;
     if (link->stream) link->stream->close();
-    link->stream_inbox.close();
-    link->datagram_inbox.close();
+    for (const auto& inbox : link->inboxes) inbox->close();
     link->connected.notify();
   }
   stopping_.notify();
@@ -276,15 +276,13 @@ PeerNetwork::State::Link& PeerNetwork::State::link(PeerId peer) {
 }
 
 MessageChannel& PeerNetwork::State::channel(PeerId peer, Transport transport) {
-  Link& with = link(peer);
-  return transport == Transport::kStream ? *with.stream_channel : *with.datagram_channel;
+  return *link(peer).channels[static_cast<std::size_t>(transport)];
 }
 
 void PeerNetwork::State::clear() {
   for (const auto& link : links_) {
     if (!link) continue;
-    link->stream_inbox.clear();
-    link->datagram_inbox.clear();
+    for (const auto& inbox : link->inboxes) inbox->clear();
   }
 }
 
@@ -517,19 +515,25 @@ void PeerNetwork::State::judge_datagram(const DatagramSocket::Received& datagram
       break;
   }
   link.proven_source = from;
-  deliver(link, Transport::kDatagram, std::move(message), datagram.at);
+  const std::optional<Transport> channel = take_channel(message);
+  if (!channel) {
+    ++statistics_.refused_malformed;
+    return;
+  }
+  deliver(link, *channel, std::move(message), datagram.at);
 }
 
-MessageId PeerNetwork::State::send_datagram(PeerId peer, const Bytes& message) {
+MessageId PeerNetwork::State::send_datagram(PeerId peer, Transport transport,
+                                            const Bytes& message) {
   if (message.size() > kMaxDatagramMessage) {
     throw StreamError(StreamError::Kind::kNotUnderstood,
-                      "found a datagram to a host that is too long, allowed: 65479 bytes");
+                      "found a datagram to a host that is too long, allowed: 65478 bytes");
   }
   const MessageId id = next_datagram_++;
   Link& to = link(peer);
   const bool known = to.datagrams_to.port() != 0 && !to.datagrams_to.address().is_unspecified();
   if (stopped_ || !to.session || !known) return id;
-  datagrams_.send(id, to.session->seal_next(message), to.datagrams_to);
+  datagrams_.send(id, to.session->seal_next(with_channel(transport, message)), to.datagrams_to);
   return id;
 }
 

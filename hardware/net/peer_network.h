@@ -3,8 +3,9 @@
 // One TCP listener and one UDP socket on the same port. Between two hosts there is one
 // SecureStream, which the host of higher number opens, and reopens when it is lost. Datagrams of
 // the pair are sealed under a key of that stream's session, with a counter that is accepted once (a
-// window of 1024, as in RFC 6479). A host's MessageChannels (stream and datagram) are views of
-// these and survive a reconnection; messages sent meanwhile are lost, as over any network.
+// window of 1024, as in RFC 6479), and say in the seal which of the pair's two datagram channels
+// they are for. A host's MessageChannels (one for each Transport) are views of these and survive a
+// reconnection; messages sent meanwhile are lost, as over any network.
 //
 // Contract
 //  - Bounded everywhere: 64 unauthenticated connections of 2 s, 1024 received messages a
@@ -54,7 +55,7 @@ struct NetworkStatistics {
   std::uint64_t datagrams_received = 0;
   std::uint64_t refused_forged = 0;     // seal broken, or no session
   std::uint64_t refused_replayed = 0;   // counter seen before, or too old
-  std::uint64_t refused_malformed = 0;  // truncated, oversized, unknown
+  std::uint64_t refused_malformed = 0;  // truncated, oversized, unknown channel
   std::uint64_t refused_rate = 0;       // beyond the bucket
   std::uint64_t refused_connections = 0;
   std::uint64_t dropped_full_queue = 0;

@@ -39,7 +39,7 @@
 namespace simbench::hardware {
 
 // Changes with every change of what goes over the wire; both sides must have the same.
-inline constexpr std::uint16_t kProtocolVersion = 1;
+inline constexpr std::uint16_t kProtocolVersion = 2;
 
 // The name of a side: a host's index in the rig file, or the conductor.
 struct PeerName {

@@ -137,10 +137,25 @@ class CameraBench::Worker {
       attempt(problems, place.serial, [&] {
         std::unique_ptr<Camera> camera = driver_.open(place.serial);
         camera->configure(settings);
+        if (settings.steering && !camera->steering()) {
+          throw CameraError(
+              "its frames cannot be steered, as the pipeline's capture_alignment "
+              "needs: of real cameras none can, RealSense's SDK has no control of a "
+              "frame's length; allowed: cameras that play a recording");
+        }
         open_.push_back({place, std::move(camera)});
       });
     }
     return problems;
+  }
+
+  CameraSteerings steerings() {
+    CameraSteerings steerings;
+    for (const Open& open : open_) {
+      auto steering = open.camera->steering();
+      if (steering) steerings[open.place.number] = std::move(steering);
+    }
+    return steerings;
   }
 
   CameraProblems start(const std::shared_ptr<CameraFeed>& feed) {
@@ -224,6 +239,10 @@ Task<CameraProblems> CameraBench::prepare(CameraSettings settings) {
   return call_in<CameraProblems>(thread_, [worker = worker_, settings = std::move(settings)] {
     return worker->prepare(settings);
   });
+}
+
+Task<CameraSteerings> CameraBench::steerings() {
+  return call_in<CameraSteerings>(thread_, [worker = worker_] { return worker->steerings(); });
 }
 
 Task<CameraProblems> CameraBench::start(std::shared_ptr<CameraFeed> feed) {

@@ -94,8 +94,11 @@ class CameraBench {
   // Looks for the cameras at once, in the caller's thread; the first call.
   std::vector<CameraState> look();
   Task<std::vector<CameraState>> look_again();
-  // Opens and sets the cameras, after closing those that are open.
+  // Opens and sets the cameras, after closing those that are open. A camera that should be steered
+  // and cannot is a problem.
   Task<CameraProblems> prepare(CameraSettings settings);
+  // Of those that are prepared.
+  Task<CameraSteerings> steerings();
   // Starts those that are prepared.
   Task<CameraProblems> start(std::shared_ptr<CameraFeed> feed);
   // Idempotent. No handler runs after it.

@@ -18,7 +18,6 @@
 #include "hardware/net/peer_network.h"
 #include "hardware/node/camera_bench.h"
 #include "hardware/node/conductor_connection.h"
-#include "hardware/node/session.h"
 #include "recording/version.h"
 
 namespace simbench::hardware {
@@ -111,7 +110,7 @@ json problems_of(const CameraProblems& problems) {
 class Node::State : public std::enable_shared_from_this<Node::State> {
  public:
   State(boost::asio::io_context& context, NodeSettings settings, NodeClock& clock,
-        CameraDriver& cameras, HostSyncFactory make_host_sync, Log log);
+        CameraDriver& cameras, PipelineFactory make_pipeline, Log log);
 
   void start();
   void stop();
@@ -150,7 +149,7 @@ class Node::State : public std::enable_shared_from_this<Node::State> {
   boost::asio::io_context& context_;
   NodeSettings settings_;
   NodeClock& clock_;
-  HostSyncFactory make_host_sync_;
+  PipelineFactory make_pipeline_;
   Log log_;
   CameraBench cameras_;
   std::shared_ptr<PeerNetwork> network_;
@@ -164,11 +163,11 @@ class Node::State : public std::enable_shared_from_this<Node::State> {
 };
 
 Node::State::State(asio::io_context& context, NodeSettings settings, NodeClock& clock,
-                   CameraDriver& cameras, HostSyncFactory make_host_sync, Log log)
+                   CameraDriver& cameras, PipelineFactory make_pipeline, Log log)
     : context_(context),
       settings_(std::move(settings)),
       clock_(clock),
-      make_host_sync_(std::move(make_host_sync)),
+      make_pipeline_(std::move(make_pipeline)),
       log_(std::move(log)),
       cameras_(cameras, places(settings_)),
       silence_timer_(context),
@@ -395,7 +394,7 @@ SessionPlan Node::State::plan_of(const json& arguments) const {
   plan.scenario = scenarios::load_scenario_text(text, "scenario");
   check_rig_fits(settings_.rig, plan.scenario);
   try {
-    plan.host_sync = make_host_sync_(plan.scenario, plan.pipeline);
+    plan.algorithms = make_pipeline_(plan.scenario, plan.pipeline);
   } catch (const scenarios::InputError& error) {
     throw RequestError(
         fmt::format("{} (this node: simbench {}, commit {})", error.what(), version(), commit()));
@@ -452,9 +451,9 @@ json Node::State::read(const json& arguments) const {
 }
 
 Node::Node(asio::io_context& context, NodeSettings settings, NodeClock& clock,
-           CameraDriver& cameras, HostSyncFactory make_host_sync, Log log)
+           CameraDriver& cameras, PipelineFactory make_pipeline, Log log)
     : state_(std::make_shared<State>(context, std::move(settings), clock, cameras,
-                                     std::move(make_host_sync), std::move(log))) {}
+                                     std::move(make_pipeline), std::move(log))) {}
 Node::~Node() {
   state_->stop();
   state_->join();

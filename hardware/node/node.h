@@ -7,13 +7,14 @@
 // Contract
 //  - One session at a time; a second conductor gets the name of the first and since when it
 //    conducts.
-//  - Every frame, adjustment, exchange and outcome goes to the session's journal, in order, by one
+//  - Every frame, adjustment, exchange, outcome and report goes to the session's journal, in order,
+//  by one
 //    write() a batch of at most 20 ms: written data survives a kill of the process. A full disk is
 //    a note to the conductor at once; frames are then counted, not kept, and the other hosts go on.
 //  - `log` gets a line for each event.
 //  - Arrival stamps are taken in the camera's thread; everything else runs on `context`'s thread.
 //
-//   Node node(context, settings, clock, cameras, make_host_sync, log);
+//   Node node(context, settings, clock, cameras, make_pipeline, log);
 //   node.start();
 //   context.run();
 #ifndef SIMBENCH_HARDWARE_NODE_NODE_H_
@@ -24,20 +25,20 @@
 #include <memory>
 #include <string>
 
-#include "algorithms/ports/host_sync.h"
 #include "hardware/camera/camera.h"
 #include "hardware/clock/node_clock.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/node/protocol.h"
+#include "hardware/node/session.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::hardware {
 
-// Makes the host_sync of a scenario's pipeline; throws scenarios::InputError. hardware/ does not
+// Makes the algorithms of a scenario's pipeline; throws scenarios::InputError. hardware/ does not
 // know the algorithms.
-using HostSyncFactory = std::function<std::unique_ptr<HostSync>(const scenarios::Scenario& scenario,
-                                                                const std::string& pipeline)>;
+using PipelineFactory =
+    std::function<NodePipeline(const scenarios::Scenario& scenario, const std::string& pipeline)>;
 
 struct NodeSettings {
   Rig rig;
@@ -57,7 +58,7 @@ class Node {
   // taken, CameraError if a camera of the rig file is missing, JournalError if journals cannot be
   // written, scenarios::InputError for a rig without a key that leaves this machine.
   Node(boost::asio::io_context& context, NodeSettings settings, NodeClock& clock,
-       CameraDriver& cameras, HostSyncFactory make_host_sync, Log log);
+       CameraDriver& cameras, PipelineFactory make_pipeline, Log log);
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;

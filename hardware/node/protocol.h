@@ -21,8 +21,8 @@
 // synchronise  role "master" or "slave",        host_sync started; notice "synchronised" {error: text
 //              [slaves]                         or null} when it has returned
 // prepare                                       cameras opened and set: problems [{camera, text}]
-// start                                         cameras started: problems
-// stop                                          cameras stopped, what they delivered is on disk
+// start                                         cameras started: problems; capture_alignment runs
+// stop                                          it is ended, cameras stopped, what they delivered is on disk
 // read         session, offset                  text (of the journal from there, whole lines, at most
 //                                               256 KiB), size (of the journal's whole lines), closed
 // end          session                          everything stopped, journal closed

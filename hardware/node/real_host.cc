@@ -1,16 +1,18 @@
 #include "hardware/node/real_host.h"
 
+#include <algorithm>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/circular_buffer.hpp>
 #include <boost/intrusive/list.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
-#include <cstddef>
-#include <optional>
 #include <random>
 #include <utility>
+#include <vector>
+
+#include "hardware/node/kept_frames.h"
+#include "hardware/node/real_frame_control.h"
 
 namespace simbench::hardware {
 namespace {
@@ -31,44 +33,6 @@ struct Sleeper : AutoUnlink {
   explicit Sleeper(boost::asio::io_context& context) : timer(context) {}
   boost::asio::steady_timer timer;
 };
-
-// The feed of the host's own frames, the last 1024. One coroutine waits at a time
-// (algorithms/ports/host.h).
-class KeptFrames final : public FrameFeed {
- public:
-  static constexpr std::size_t kKept = 1024;
-
-  KeptFrames(boost::asio::io_context& context, const NodeClock& clock);
-
-  Task<std::optional<FrameArrival>> next(SteadyTime deadline) override;
-  void deliver(const FrameArrival& frame);
-
- private:
-  const NodeClock& clock_;
-  boost::asio::steady_timer waiting_;
-  boost::circular_buffer<FrameArrival> frames_{kKept};
-};
-
-KeptFrames::KeptFrames(boost::asio::io_context& context, const NodeClock& clock)
-    : clock_(clock), waiting_(context) {}
-
-Task<std::optional<FrameArrival>> KeptFrames::next(SteadyTime deadline) {
-  while (frames_.empty()) {
-    if (clock_.steady_at(monotonic_now()) >= deadline) co_return std::nullopt;
-    waiting_.expires_at(for_timer(clock_.oscillator().when(deadline)));
-    boost::system::error_code delivered;
-    co_await waiting_.async_wait(
-        boost::asio::redirect_error(boost::asio::use_awaitable, delivered));
-  }
-  const FrameArrival frame = frames_.front();
-  frames_.pop_front();
-  co_return frame;
-}
-
-void KeptFrames::deliver(const FrameArrival& frame) {
-  frames_.push_back(frame);
-  waiting_.cancel();
-}
 
 }  // namespace
 
@@ -94,6 +58,9 @@ class RealHost::State {
   Parts parts;
   NodeSteadyClock steady_clock;
   KeptFrames frames;
+  // All that there were, as coroutines may hold them, and those of the cameras in use.
+  std::vector<std::unique_ptr<RealFrameControl>> all_controls;
+  std::vector<FrameControl*> controls;
   bool observes = true;  // the clock
   boost::random::mt19937_64 engine{std::random_device{}()};
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers;
@@ -156,6 +123,27 @@ void RealHost::report_exchange(const Exchange& exchange) {
 
 void RealHost::report_outcome(const SyncOutcome& outcome) { state_->parts.sink(outcome); }
 
-void RealHost::deliver(const FrameArrival& frame) { state_->frames.deliver(frame); }
+void RealHost::report_alignment(const AlignmentReport& report) { state_->parts.sink(report); }
+
+std::span<FrameControl* const> RealHost::frame_controls() { return state_->controls; }
+
+void RealHost::steer(const CameraSteerings& cameras) {
+  state_->controls.clear();
+  for (const auto& [camera, steering] : cameras) {
+    const RealFrameControl::Place place{state_->parts.context, state_->parts.clock, *this};
+    state_->all_controls.push_back(std::make_unique<RealFrameControl>(place, camera, steering));
+    state_->controls.push_back(state_->all_controls.back().get());
+  }
+}
+
+void RealHost::deliver(const FrameArrival& frame) {
+  state_->frames.deliver(frame);
+  const auto newest =
+      state_->all_controls.end() - static_cast<std::ptrdiff_t>(state_->controls.size());
+  const auto of_camera = std::find_if(newest, state_->all_controls.end(), [&](const auto& control) {
+    return control->camera() == frame.camera;
+  });
+  if (of_camera != state_->all_controls.end()) (*of_camera)->deliver(frame);
+}
 
 }  // namespace simbench::hardware

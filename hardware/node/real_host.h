@@ -4,9 +4,9 @@
 // simulator. Steady time follows the node's oscillator; sleep_until(HostTime) follows its system
 // clock and is re-armed when that is adjusted. There is no card clock and no pulse input (an
 // algorithm that needs them is refused before it starts); the feed has the frames of the host's own
-// cameras.
+// cameras. Those that can be steered have frame controls.
 //
-// Exchanges, outcomes and clock adjustments go to `sink` as they happen.
+// Exchanges, outcomes, alignment reports and clock adjustments go to `sink` as they happen.
 // One thread. Coroutines that use it end before it does.
 //
 //   RealHost host(context, 3, clock, network,
@@ -16,9 +16,12 @@
 #define SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
 
 #include <boost/asio/io_context.hpp>
+#include <functional>
 #include <memory>
+#include <span>
 
 #include "algorithms/ports/host.h"
+#include "hardware/camera/camera.h"
 #include "hardware/clock/node_clock.h"
 #include "hardware/net/peer_network.h"
 #include "recording/event.h"
@@ -43,10 +46,14 @@ class RealHost final : public Host {
   double random_uniform() override;
   void report_exchange(const Exchange& exchange) override;
   void report_outcome(const SyncOutcome& outcome) override;
+  void report_alignment(const AlignmentReport& report) override;
+  std::span<FrameControl* const> frame_controls() override;
 
   // Observes the clock no longer, so that another host may. The destructor does the same.
   void release_clock();
-  // A frame of one of this host's cameras, for the feed.
+  // From now on these are the cameras that frame_controls() is about.
+  void steer(const CameraSteerings& cameras);
+  // A frame of one of this host's cameras, for the feed and its control.
   void deliver(const FrameArrival& frame);
 
  private:

@@ -20,7 +20,7 @@ namespace {
 namespace asio = boost::asio;
 using nlohmann::json;
 
-// A cancelled host_sync returns at its next wait; one that does not return in time is abandoned.
+// A cancelled algorithm returns at its next wait; one that does not return in time is abandoned.
 constexpr auto kCancelLimit = std::chrono::seconds(2);
 
 std::string time_of_day() {
@@ -30,13 +30,17 @@ std::string time_of_day() {
   return fmt::format("{:%H:%M:%S}", local);
 }
 
-CameraSettings settings_of(const scenarios::Scenario& scenario) {
-  const scenarios::Cameras& cameras = scenario.cameras;
-  return {.sync_mode = cameras.sync_mode,
-          .streams = cameras.streams,
-          .exposure_ms = cameras.exposure_ms,
-          .auto_exposure = cameras.auto_exposure.is_on(),
-          .trigger_rate_hz = scenario.trigger.rate_hz};
+SteeringSettings steering_of(const scenarios::Scenario& scenario) {
+  const scenarios::FrameControlModel& model = *scenario.cameras.frame_control;
+  return {.limits = {.frame_length = from_ms(scenario.trigger.period_ms()),
+                     .shortest = from_ms(model.shortest_ms),
+                     .longest = from_ms(model.longest_ms),
+                     .granularity = from_us(model.granularity_us),
+                     .exposure = from_ms(scenario.cameras.exposure_ms),
+                     .latency_frames = static_cast<std::uint32_t>(model.latency_frames),
+                     .allowed = {model.adjust_frame, model.insert_frame, model.frame_length,
+                                 model.start_at}},
+          .insert_stretches = model.insert_stretches};
 }
 
 }  // namespace
@@ -48,7 +52,8 @@ Session::Session(SessionWorld world, SessionPlan plan)
       scored_(plan_.scenario.evaluation.stream),
       journal_(world_.context, world_.journal_folder, plan_.id,
                [this](const std::string& trouble) { note(trouble); }),
-      sync_ended_(world_.context) {
+      sync_(world_.context),
+      alignment_(world_.context) {
   world_.network->clear();
   world_.clock.restart();
   ClockAdjustment present = world_.clock.present(monotonic_now());
@@ -83,26 +88,59 @@ void Session::synchronise(const std::string& role, std::vector<PeerId> slaves) {
   }
   if (sync_was_started_) throw SessionError("host_sync was already started in this session");
   sync_was_started_ = true;
-  sync_runs_ = true;
-  const bool all = slaves.empty();
-  for (PeerId host = 0; all && host < world_.hosts; ++host) {
-    if (host != world_.me) slaves.push_back(host);
-  }
-  Task<void> run = role == "master" ? plan_.host_sync->run_master(*host_, std::move(slaves))
-                                    : plan_.host_sync->run_slave(*host_, 0);
+  if (slaves.empty()) slaves = other_hosts();
+  HostSync& host_sync = *plan_.algorithms.host_sync;
+  Task<void> run = role == "master" ? host_sync.run_master(*host_, std::move(slaves))
+                                    : host_sync.run_slave(*host_, 0);
   world_.log(
       fmt::format("session {}: host_sync of {} started as {}", plan_.id, plan_.pipeline, role));
+  launch(sync_, std::move(run), &Session::on_synchronised);
+}
+
+std::vector<PeerId> Session::other_hosts() const {
+  std::vector<PeerId> others;
+  others.reserve(world_.hosts);
+  for (PeerId host = 0; host < world_.hosts; ++host) {
+    if (host != world_.me) others.push_back(host);
+  }
+  return others;
+}
+
+void Session::launch(Run& run, Task<void> coroutine, OnEnd on_end) {
+  run.runs = true;
+  run.is_cancelled = false;
   asio::co_spawn(
-      world_.context, std::move(run),
-      asio::bind_cancellation_slot(
-          sync_cancel_.slot(), [session = shared_from_this()](const std::exception_ptr& failure) {
-            session->on_synchronised(failure);
-          }));
+      world_.context, std::move(coroutine),
+      asio::bind_cancellation_slot(run.cancel.slot(), [session = shared_from_this(), &run,
+                                                       on_end](const std::exception_ptr& failure) {
+        run.runs = false;
+        run.ended.cancel();
+        (*session.*on_end)(failure);
+      }));
+}
+
+void Session::start_alignment() {
+  CaptureAlignment* const alignment = plan_.algorithms.capture_alignment.get();
+  if (alignment == nullptr) return;
+  if (alignment_.runs) return note("capture_alignment: that of the capture before still runs");
+  const bool is_master = world_.me == 0;
+  world_.log(fmt::format("session {}: capture_alignment of {} started as {}", plan_.id,
+                         plan_.pipeline, is_master ? "master" : "slave"));
+  launch(alignment_,
+         is_master ? alignment->run_master(*host_, other_hosts()) : alignment->run_slave(*host_, 0),
+         &Session::on_aligned);
+}
+
+void Session::on_aligned(const std::exception_ptr& failure) {
+  if (alignment_.is_cancelled || !failure) return;
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& exception) {
+    note(fmt::format("capture_alignment failed: {}", exception.what()));
+  }
 }
 
 void Session::on_synchronised(const std::exception_ptr& failure) {
-  sync_runs_ = false;
-  sync_ended_.cancel();
   if (ending_) return;
   json error = nullptr;
   try {
@@ -115,12 +153,27 @@ void Session::on_synchronised(const std::exception_ptr& failure) {
   world_.notify("synchronised", {{"session", plan_.id}, {"error", error}});
 }
 
+CameraSettings Session::camera_settings() const {
+  const scenarios::Cameras& cameras = plan_.scenario.cameras;
+  CameraSettings settings{.sync_mode = cameras.sync_mode,
+                          .streams = cameras.streams,
+                          .exposure_ms = cameras.exposure_ms,
+                          .auto_exposure = cameras.auto_exposure.is_on(),
+                          .trigger_rate_hz = plan_.scenario.trigger.rate_hz};
+  if (plan_.algorithms.capture_alignment && cameras.frame_control) {
+    settings.steering = steering_of(plan_.scenario);
+  }
+  return settings;
+}
+
 Task<CameraProblems> Session::prepare() {
   require_not_ending();
   if (cameras_ == Cameras::kStarted) throw SessionError("the cameras are running: stop them first");
   const auto self = shared_from_this();
-  CameraProblems problems = co_await world_.cameras.prepare(settings_of(plan_.scenario));
+  CameraProblems problems = co_await world_.cameras.prepare(camera_settings());
+  const CameraSteerings steerings = co_await world_.cameras.steerings();
   require_not_ending();
+  host_->steer(steerings);
   cameras_ = Cameras::kPrepared;
   note_problems(problems);
   co_return problems;
@@ -135,6 +188,7 @@ Task<CameraProblems> Session::start() {
   CameraProblems problems = co_await world_.cameras.start(feed_);
   world_.log(fmt::format("session {}: cameras started", plan_.id));
   note_problems(problems);
+  if (!ending_ && cameras_ == Cameras::kStarted) start_alignment();
   co_return problems;
 }
 
@@ -143,6 +197,7 @@ Task<CameraProblems> Session::stop() {
   const auto self = shared_from_this();
   CameraProblems problems;
   if (cameras_ != Cameras::kStarted) co_return problems;
+  co_await end_run(alignment_, "capture_alignment");
   problems = co_await world_.cameras.stop();
   require_not_ending();
   feed_->drain();
@@ -157,7 +212,8 @@ Task<CameraProblems> Session::stop() {
 Task<void> Session::end(std::string reason) {
   if (std::exchange(ending_, true)) co_return;
   const auto self = shared_from_this();
-  co_await end_host_sync();
+  co_await end_run(alignment_, "capture_alignment");
+  co_await end_run(sync_, "host_sync");
   const CameraProblems problems = co_await world_.cameras.close();
   feed_->drain();
   note_problems(problems);
@@ -169,22 +225,23 @@ Task<void> Session::end(std::string reason) {
   }
   feed_->close();
   journal_.close();
-  // The next session's host observes the same clock, even while an abandoned host_sync goes on.
+  // The next session's host observes the same clock, even while an abandoned algorithm goes on.
   host_->release_clock();
-  if (!sync_runs_) host_.reset();
+  if (!sync_.runs && !alignment_.runs) host_.reset();
   world_.log(fmt::format("session {} ended ({}): {}, {} not kept", plan_.id, reason,
                          counted(journal_.frames(), "frame"),
                          journal_.frames_not_kept() + feed_->dropped()));
 }
 
-Task<void> Session::end_host_sync() {
-  if (!sync_runs_) co_return;
-  sync_ended_.expires_after(kCancelLimit);
-  sync_cancel_.emit(asio::cancellation_type::terminal);
-  if (!sync_runs_) co_return;
-  co_await ended(sync_ended_);
-  if (sync_runs_) {
-    world_.log(fmt::format("session {}: host_sync of {} does not end", plan_.id, plan_.pipeline));
+Task<void> Session::end_run(Run& run, std::string what) {
+  if (!run.runs) co_return;
+  run.is_cancelled = true;
+  run.ended.expires_after(kCancelLimit);
+  run.cancel.emit(asio::cancellation_type::terminal);
+  if (!run.runs) co_return;
+  co_await ended(run.ended);
+  if (run.runs) {
+    world_.log(fmt::format("session {}: {} of {} does not end", plan_.id, what, plan_.pipeline));
   }
 }
 

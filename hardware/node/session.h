@@ -2,6 +2,7 @@
 //
 // Holds what belongs to one session alone: the journal, the real host on which host_sync runs, the
 // feed of the cameras. The node lends its clock, sockets and cameras.
+// A capture_alignment, if the pipeline has one, runs from start to stop, as master on host 0.
 //
 //   begun ── synchronise ──► host_sync runs; notice "synchronised" when it returns
 //         ── prepare ──► start ──► stop ──► (prepare ...)     cameras
@@ -30,6 +31,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
 #include "hardware/clock/node_clock.h"
 #include "hardware/net/peer_network.h"
@@ -45,13 +47,19 @@ class SessionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The algorithms of a pipeline that run on a node.
+struct NodePipeline {
+  std::unique_ptr<HostSync> host_sync;
+  std::unique_ptr<CaptureAlignment> capture_alignment{};  // null: none
+};
+
 // The conductor's request.
 struct SessionPlan {
   std::string id;
   std::string conductor;
   scenarios::Scenario scenario;
   std::string pipeline;
-  std::unique_ptr<HostSync> host_sync;
+  NodePipeline algorithms;
 };
 
 // What the node lends to the session; outlives it.
@@ -90,6 +98,16 @@ class Session : public std::enable_shared_from_this<Session> {
   Task<void> end(std::string reason);
 
  private:
+  // A coroutine of an algorithm.
+  struct Run {
+    explicit Run(boost::asio::io_context& context) : ended(context) {}
+    bool runs = false;
+    bool is_cancelled = false;
+    boost::asio::cancellation_signal cancel;
+    boost::asio::steady_timer ended;
+  };
+  using OnEnd = void (Session::*)(const std::exception_ptr& failure);
+
   enum class Cameras : std::uint8_t { kClosed, kPrepared, kStarted };
 
   void on_frame(std::uint32_t camera, const CameraFrame& frame);
@@ -98,7 +116,14 @@ class Session : public std::enable_shared_from_this<Session> {
   void note(const std::string& text);
   void note_problems(const CameraProblems& problems);
   void require_not_ending() const;
-  Task<void> end_host_sync();
+  std::vector<PeerId> other_hosts() const;
+  CameraSettings camera_settings() const;
+  void start_alignment();
+  void on_aligned(const std::exception_ptr& failure);
+  // Calls `on_end` when the coroutine has ended.
+  void launch(Run& run, Task<void> coroutine, OnEnd on_end);
+  // `what` it is, for the log.
+  Task<void> end_run(Run& run, std::string what);
 
   SessionWorld world_;
   SessionPlan plan_;
@@ -110,10 +135,9 @@ class Session : public std::enable_shared_from_this<Session> {
   Cameras cameras_ = Cameras::kClosed;
   bool ending_ = false;
 
-  bool sync_runs_ = false;
   bool sync_was_started_ = false;
-  boost::asio::cancellation_signal sync_cancel_;
-  boost::asio::steady_timer sync_ended_;
+  Run sync_;
+  Run alignment_;
 };
 
 }  // namespace simbench::hardware

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace simbench::sim {
@@ -19,8 +18,8 @@ SteeredSensor::SteeredSensor(const SteeredSensorSettings& settings, OscillatorMo
       draws_(std::move(draws)),
       zero_(oscillator_zero.time_since_epoch()),
       phase_(draws_.uniform()),
-      exposure_(settings.limits.exposure) {
-  lengths_[0] = settings_.limits.nearest(settings_.limits.frame_length);
+      exposure_(settings.limits.exposure),
+      lengths_(settings.limits, settings.insert_stretches) {
   restart(start, start);
 }
 
@@ -36,15 +35,12 @@ TrueTime SteeredSensor::true_time(double device, TrueTime near) const {
 }
 
 Nanoseconds SteeredSensor::exposure_of(std::int64_t frame) const {
-  const auto inserted = inserted_.find(frame);
-  return inserted != inserted_.end() ? inserted->second : exposure_;
+  return lengths_.exposure(frame).value_or(exposure_);
 }
 
 // From the readout of that frame to the next, into which the next exposure has to fit.
 Nanoseconds SteeredSensor::length_after(std::int64_t frame) const {
-  const auto single = single_.find(frame);
-  const Nanoseconds wanted =
-      single != single_.end() ? single->second : std::prev(lengths_.upper_bound(frame))->second;
+  const Nanoseconds wanted = lengths_.of(frame);
   const Nanoseconds step = settings_.limits.granularity;
   const Nanoseconds least = exposure_of(frame + 1) + step;
   if (wanted >= least) return wanted;
@@ -90,19 +86,11 @@ Exposure SteeredSensor::expose(Nanoseconds exposure) {
   readout_device_ns_ = next_readout_device_ns_;
   readouts_.push_back(readout_);
   if (readouts_.size() > kReadoutsKept) readouts_.pop_front();
-  lengths_.erase(lengths_.begin(), std::prev(lengths_.upper_bound(frame_)));
-  single_.erase(single_.begin(), single_.lower_bound(frame_));
-  inserted_.erase(inserted_.begin(), inserted_.lower_bound(frame_));
+  lengths_.forget_before(frame_);
   const TrueTime read = readout_ + from_ns(draws_.normal(settings_.jitter_sigma_ns));
   const Exposure made{kNoPulse, read - exposure_of(frame_), read + settings_.readout};
   plan_next();
   return made;
-}
-
-Nanoseconds SteeredSensor::length_by(const FrameCommand& command, std::int64_t frame) const {
-  const bool is_relative = command.kind == FrameControlKind::kAdjustFrame;
-  const Nanoseconds usual = std::prev(lengths_.upper_bound(frame))->second;
-  return settings_.limits.nearest(is_relative ? usual + command.length : command.length);
 }
 
 void SteeredSensor::latch(const FrameCommand& command, TrueTime at, TrueTime made_until) {
@@ -112,18 +100,12 @@ void SteeredSensor::latch(const FrameCommand& command, TrueTime at, TrueTime mad
   const std::int64_t in_progress = frame_ - (readouts_.end() - begun);
   const auto latency = static_cast<std::int64_t>(settings_.limits.latency_frames);
   std::int64_t frame = std::max(in_progress + latency, frame_);
-  const Nanoseconds length = length_by(command, frame);
+  const Nanoseconds length = lengths_.wanted(command.kind, command.length, frame);
   if (frame == frame_ && readout_ + length - exposure_ < made_until) ++frame;
-  if (command.kind == FrameControlKind::kFrameLength) {
-    lengths_.erase(lengths_.upper_bound(frame), lengths_.end());
-    lengths_[frame] = length;
-  } else {
-    single_[frame] = length;
-  }
+  lengths_.set(command.kind, length, frame);
   if (command.kind == FrameControlKind::kInsertFrame) {
-    inserted_[frame + 1] = length - settings_.limits.granularity;
     for (std::int64_t i = 0; i < settings_.insert_stretches; ++i) {
-      single_[frame + i] = length + from_ns(draws_.normal(settings_.insert_noise_sigma_ns));
+      lengths_.lengthen(frame + i, from_ns(draws_.normal(settings_.insert_noise_sigma_ns)));
     }
   }
   if (frame == frame_) plan_next();

@@ -29,9 +29,9 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 
 #include "algorithms/ports/frame_control.h"
+#include "clocks/frame_lengths.h"
 #include "recording/true_time.h"
 #include "sim/camera/shutter.h"
 #include "sim/clock/oscillator.h"
@@ -77,8 +77,6 @@ class SteeredSensor {
 
   Nanoseconds length_after(std::int64_t frame) const;
   Nanoseconds exposure_of(std::int64_t frame) const;
-  // Of that frame as the command wants it.
-  Nanoseconds length_by(const FrameCommand& command, std::int64_t frame) const;
   TrueTime true_time(double device_ns, TrueTime near) const;
   double device_ns(TrueTime at) const;
   void plan_next();
@@ -97,10 +95,8 @@ class SteeredSensor {
   TrueTime next_readout_{};
   double next_readout_device_ns_ = 0;
   TrueTime next_exposure_{};
-  std::deque<TrueTime> readouts_;                 // of the last frames, the newest is frame_
-  std::map<std::int64_t, Nanoseconds> single_;    // lengths of single frames
-  std::map<std::int64_t, Nanoseconds> lengths_;   // from that frame on
-  std::map<std::int64_t, Nanoseconds> inserted_;  // exposures of inserted frames
+  std::deque<TrueTime> readouts_;  // of the last frames, the newest is frame_
+  clocks::FrameLengths lengths_;
 };
 
 }  // namespace simbench::sim

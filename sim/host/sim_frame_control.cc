@@ -34,8 +34,7 @@ SimFrameControl::SimFrameControl(SimHost& host, std::uint32_t camera,
     : host_(host),
       camera_(camera),
       model_(*scenario.cameras.frame_control),
-      limits_(frame_limits(scenario)),
-      steady_length_(limits_.nearest(limits_.frame_length)),
+      requests_(frame_limits(scenario)),
       feed_(host) {}
 
 Task<std::optional<FrameArrival>> SimFrameControl::next_frame(SteadyTime deadline) {
@@ -48,12 +47,9 @@ void SimFrameControl::push(FrameArrival frame) {
   feed_.push(frame);
 }
 
-FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value,
-                                        Nanoseconds length) {
-  std::string refused = refusal_of(limits_, kind, length);
-  if (!refused.empty()) return {.refused = std::move(refused)};
-  const Nanoseconds made = limits_.nearest(length);
-  if (kind == FrameControlKind::kFrameLength) steady_length_ = made;
+FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value) {
+  FrameControlReply reply = requests_.reply(kind, value);
+  if (!reply.is_accepted()) return reply;
   RandomStream draws = control_draws(host_.world().run_seed, camera_, sent_++);
   const bool is_lost = draws.chance(model_.loss_probability);
   const double delay_ms = model_.delay_ms + draws.exponential(model_.delay_exponential_ms);
@@ -63,37 +59,32 @@ FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value
       host_.world().frames.steer(camera_, command);
     });
   }
-  return {.length = made};
+  return reply;
 }
 
 Task<FrameControlReply> SimFrameControl::adjust_frame(Nanoseconds by) {
-  co_return send(FrameControlKind::kAdjustFrame, by, steady_length_ + by);
+  co_return send(FrameControlKind::kAdjustFrame, by);
 }
 
 Task<FrameControlReply> SimFrameControl::insert_frame(Nanoseconds length) {
-  co_return send(FrameControlKind::kInsertFrame, length, length);
+  co_return send(FrameControlKind::kInsertFrame, length);
 }
 
 Task<FrameControlReply> SimFrameControl::set_frame_length(Nanoseconds length) {
-  co_return send(FrameControlKind::kFrameLength, length, length);
+  co_return send(FrameControlKind::kFrameLength, length);
 }
 
 Task<FrameControlReply> SimFrameControl::start_at(HostTime at) {
-  const auto kind = FrameControlKind::kStartAt;
-  if (std::string refused = refusal_of(limits_, kind, {}); !refused.empty()) {
-    co_return FrameControlReply{.refused = std::move(refused)};
-  }
   const HostTime now = host_.system_clock().read(host_.true_now());
-  if (at <= now) {
-    co_return FrameControlReply{.refused = "found a start " + std::to_string(to_ms(now - at)) +
-                                           " ms ago, allowed: one to come"};
-  }
+  std::string refused = refusal_of_start(limits(), at, now);
+  if (!refused.empty()) co_return FrameControlReply{.refused = std::move(refused)};
   RandomStream draws = control_draws(host_.world().run_seed, camera_, sent_++);
   const bool is_lost = draws.chance(model_.loss_probability);
   const Nanoseconds late = from_us(draws.normal(model_.start_jitter_sigma_us));
   if (at > now + kBeforeStart) co_await host_.sleep_until(at - kBeforeStart);
   const TrueTime due = host_.system_clock().when(at, host_.true_now());
-  if (!is_lost) host_.world().frames.steer(camera_, {.kind = kind, .at = due + late});
+  if (!is_lost)
+    host_.world().frames.steer(camera_, {.kind = FrameControlKind::kStartAt, .at = due + late});
   co_await host_.sleep_until(at);
   co_return FrameControlReply{};
 }

@@ -19,6 +19,7 @@
 #include <optional>
 
 #include "algorithms/ports/frame_control.h"
+#include "clocks/frame_lengths.h"
 #include "scenarios/scenario.h"
 #include "sim/camera/steered_sensor.h"
 #include "sim/host/sim_host.h"
@@ -34,7 +35,7 @@ class SimFrameControl final : public FrameControl {
   SimFrameControl(SimHost& host, std::uint32_t camera, const scenarios::Scenario& scenario);
 
   std::uint32_t camera() const override { return camera_; }
-  const FrameControlLimits& limits() const override { return limits_; }
+  const FrameControlLimits& limits() const override { return requests_.limits(); }
   Task<std::optional<FrameArrival>> next_frame(SteadyTime deadline) override;
   Task<FrameControlReply> adjust_frame(Nanoseconds by) override;
   Task<FrameControlReply> insert_frame(Nanoseconds length) override;
@@ -48,13 +49,12 @@ class SimFrameControl final : public FrameControl {
   bool is_awaited() const { return feed_.is_awaited(); }
 
  private:
-  FrameControlReply send(FrameControlKind kind, Nanoseconds value, Nanoseconds length);
+  FrameControlReply send(FrameControlKind kind, Nanoseconds value);
 
   SimHost& host_;
   std::uint32_t camera_;
   scenarios::FrameControlModel model_;
-  FrameControlLimits limits_;
-  Nanoseconds steady_length_;  // of the frames, as the last control set it
+  clocks::FrameRequests requests_;
   std::uint64_t sent_ = 0;
   std::optional<CameraClockReading> reading_;
   SimFrameFeed feed_;

@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
+#include "scenarios/loader.h"
+
 namespace simbench::app {
 namespace {
 
@@ -177,6 +180,22 @@ TEST_F(ExperimentTruthTest, WhatIsMissingIsSaid) {
   EXPECT_THAT(failure(played_, captured_, 1), HasSubstr("1 hosts answered, 2 were played to"));
   capture(0, 7, steady(6));
   EXPECT_THAT(failure(played_, captured_), HasSubstr("camera 0: frame 707 was never played"));
+}
+
+class Steers final : public CaptureAlignment {
+ public:
+  Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }
+  Task<void> run_slave(Host&, PeerId) override { co_return; }
+};
+
+TEST(ExperimentSource, ACaptureAlignmentWouldMoveThePlayedTruth) {
+  const scenarios::Scenario scenario = scenarios::load_scenario("6node_relay");
+  ExperimentSource source(scenario, {});
+  KeptRecording captured;
+  Steers steers;
+  const RecordingRequest request{.seed = 1, .pipeline = "ntp", .capture_alignment = &steers};
+  EXPECT_THAT([&] { source.record(request, captured); },
+              testing::ThrowsMessage<RecordingFailed>(HasSubstr("capture_alignment moves frames")));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ using simbench::hardware::DatagramSession;
 using simbench::hardware::DatagramVerdict;
 using simbench::hardware::KeyBytes;
 using simbench::hardware::parse_datagram;
+using simbench::hardware::take_channel;
 
 void expect(bool holds) {
   if (!holds) std::abort();
@@ -48,6 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   expect(receiver.open(*header, sealed, opened) == DatagramVerdict::kAccepted);
   expect(opened == message);
+  expect(take_channel(opened).has_value() == (!message.empty() && message[0] < std::byte{2}));
   expect(receiver.open(*header, sealed, opened) == DatagramVerdict::kReplayed);
   return 0;
 }

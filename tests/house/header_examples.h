@@ -167,7 +167,7 @@ extern boost::system::error_code error;
 extern const boost::asio::ip::address address;
 extern boost::asio::ip::tcp::socket socket;
 extern SessionPlan plan;
-extern const HostSyncFactory make_host_sync;
+extern const PipelineFactory make_pipeline;
 extern const std::function<void(const std::string&)> log_line, log;
 extern const TriggerSwitch::Prompt prompt;
 extern std::unique_ptr<SecureStream> stream;

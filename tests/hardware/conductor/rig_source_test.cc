@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "recording/event.h"
 #include "tests/hardware/conductor/cuttable_link.h"
 #include "tests/hardware/conductor/test_rig.h"
@@ -131,6 +132,40 @@ TEST(RigSource, UnknownPipelinesAreRefusedByTheNodes) {
   RigSource source(rig.rig(), SecretKey(), scenario, {});
   KeptRecording kept;
   EXPECT_THROW(source.record({.seed = 1, .pipeline = "unheard_of"}, kept), RecordingFailed);
+}
+
+TEST(RigSource, SaysWhichCamerasCannotBeSteered) {
+  const TestRig rig({0, 0});
+  const scenarios::Scenario scenario = small_scenario(
+      {{"/cameras/frame_control",
+        R"({"adjust_frame": true, "insert_frame": true, "frame_length": true, "start_at": true,
+            "granularity_us": 10, "shortest_ms": 12, "longest_ms": 60, "latency_frames": 2,
+            "delay_ms": 0, "delay_exponential_ms": 0, "loss_probability": 0, "insert_stretches": 1,
+            "insert_noise_sigma_us": 0, "start_jitter_sigma_us": 0, "frame_jitter_sigma_us": 0})"}});
+  RigSource source(rig.rig(), SecretKey(), scenario, {});
+  KeptRecording kept;
+  EXPECT_THAT([&] { source.record({.seed = 1, .pipeline = kAlignedPipeline}, kept); },
+              testing::ThrowsMessage<RecordingFailed>(
+                  AllOf(HasSubstr("setting the cameras: host0: camera cam0: its frames cannot"),
+                        HasSubstr("host1: camera cam1"), HasSubstr("RealSense's SDK"))));
+}
+
+class IdealAlignment final : public CaptureAlignment {
+ public:
+  Steering steering() const override { return Steering::kIdeal; }
+  Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }
+  Task<void> run_slave(Host&, PeerId) override { co_return; }
+};
+
+TEST(RigSource, AnOraclesExposuresAreRefused) {
+  const TestRig rig({0, 0});
+  const scenarios::Scenario scenario = small_scenario();
+  RigSource source(rig.rig(), SecretKey(), scenario, {});
+  KeptRecording kept;
+  IdealAlignment ideal;
+  const RecordingRequest request{.seed = 1, .pipeline = kTestPipeline, .capture_alignment = &ideal};
+  EXPECT_THAT([&] { source.record(request, kept); },
+              testing::ThrowsMessage<RecordingFailed>(HasSubstr("exposures exist only in the")));
 }
 
 TEST(RigSource, ARigOfOtherSizeIsRefusedAtOnce) {

@@ -79,9 +79,19 @@ class TickingDriver final : public CameraDriver {
   std::string serial_;
 };
 
-std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario&, const std::string& pipeline) {
+class NoAlignment final : public CaptureAlignment {
+ public:
+  Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }
+  Task<void> run_slave(Host&, PeerId) override { co_return; }
+};
+
+NodePipeline make_pipeline(const scenarios::Scenario&, const std::string& pipeline) {
+  if (pipeline == kAlignedPipeline) {
+    return {.host_sync = std::make_unique<NoSync>(),
+            .capture_alignment = std::make_unique<NoAlignment>()};
+  }
   if (pipeline != kTestPipeline) throw scenarios::InputError("no such pipeline: " + pipeline);
-  return std::make_unique<NoSync>();
+  return {.host_sync = std::make_unique<NoSync>()};
 }
 
 }  // namespace
@@ -146,7 +156,7 @@ void TestRig::start(std::size_t which) {
   settings.me = static_cast<PeerId>(which);
   settings.journal_folder = folder_ / rig_.hosts[which].name;
   host.node = std::make_unique<Node>(*host.context, settings, *host.clock, host.driver,
-                                     make_host_sync, [](const std::string&) {});
+                                     make_pipeline, [](const std::string&) {});
   host.node->start();
   host.thread = std::thread([&host] { host.context->run(); });
 }

@@ -48,7 +48,7 @@ TEST(Handshake, AnotherVersionIsNamed) {
   hello.version = 513;
   const StreamError error = accept_of(write_hello(hello));
   EXPECT_EQ(error.kind(), Kind::kWrongVersion);
-  EXPECT_THAT(error.what(), HasSubstr("speaks protocol 513, this one speaks 1;"));
+  EXPECT_THAT(error.what(), HasSubstr("speaks protocol 513, this one speaks 2;"));
 }
 
 TEST(Handshake, SilenceIsATimeout) {
@@ -218,6 +218,25 @@ TEST(Attack, StrangeDatagramsAreRefusedAndCounted) {
   EXPECT_EQ(counted.refused_forged, 1u);
   EXPECT_EQ(counted.refused_malformed, 3u);
   EXPECT_EQ(hosts.receive(0, 1, Transport::kDatagram, std::chrono::milliseconds(20)), std::nullopt);
+}
+
+// A host that holds the key and speaks of a channel that there is not.
+TEST(Attack, ADatagramForNoChannelIsRefusedAndCounted) {
+  Networks hosts(2);
+  hosts.networks[1].reset();
+  const std::uint16_t port = hosts.networks[0]->port();
+  const auto stream =
+      in_time(hosts.context, SecureStream::connect(hosts.context, "127.0.0.1", port,
+                                                   key_from_digit('7'), PeerName{1}, soon()));
+  ASSERT_TRUE(until(hosts.context, [&] { return hosts.networks[0]->connected(1); }));
+  DatagramSession session(*stream, 1, 0);
+  Stranger host(hosts.context, port);
+  host.send(session.seal_next(Bytes{std::byte{2}, std::byte{'x'}}));
+  host.send(session.seal_next({}));
+  host.send(session.seal_next(with_channel(Transport::kAlignment, bytes_of("whole"))));
+  EXPECT_EQ(hosts.text(0, 1, Transport::kAlignment), "whole");
+  EXPECT_EQ(hosts.statistics(0).datagrams_received, 3u);
+  EXPECT_EQ(hosts.statistics(0).refused_malformed, 2u);
 }
 
 TEST(Attack, AFloodIsRefusedAndWhatIsRealArrives) {

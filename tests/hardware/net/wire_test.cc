@@ -82,10 +82,28 @@ TEST(Datagram, TruncatedAndOversizedOnesAreNone) {
   for (std::size_t size = 0; size < datagram.size(); ++size) {
     EXPECT_FALSE(parse_datagram(std::span(datagram).first(size))) << size;
   }
-  Bytes large = sender.seal_next(Bytes(kMaxDatagramMessage));
+  Bytes large = sender.seal_next(Bytes(kChannelBytes + kMaxDatagramMessage));
   EXPECT_TRUE(parse_datagram(large));
   large.push_back({});
   EXPECT_FALSE(parse_datagram(large));
+}
+
+TEST(Datagram, AMessageComesBackWithItsChannel) {
+  for (const Transport channel : kDatagramChannels) {
+    Bytes message = with_channel(channel, bytes_of("text"));
+    EXPECT_EQ(message.size(), kChannelBytes + 4);
+    EXPECT_EQ(take_channel(message), channel);
+    EXPECT_EQ(text_of(message), "text");
+  }
+}
+
+TEST(Datagram, OtherChannelsThanTheTwoAreNone) {
+  Bytes empty;
+  EXPECT_EQ(take_channel(empty), std::nullopt);
+  for (int number = 2; number < 256; ++number) {
+    Bytes message = {static_cast<std::byte>(number)};
+    EXPECT_EQ(take_channel(message), std::nullopt) << number;
+  }
 }
 
 // What one's own datagrams are sealed with does not open what comes.

@@ -25,6 +25,44 @@ using nlohmann::json;
 
 constexpr Nanoseconds kNodePatience = std::chrono::seconds(5);
 
+struct Alive {
+  explicit Alive(SyncSeen& which) : seen(which) { ++seen.alive; }
+  ~Alive() { --seen.alive; }
+  Alive(const Alive&) = delete;
+  Alive& operator=(const Alive&) = delete;
+  SyncSeen& seen;
+};
+
+// Makes the first frame of each camera 1 ms longer, and goes on.
+class CountedAlignment final : public CaptureAlignment {
+ public:
+  CountedAlignment(SyncKind kind, SyncSeen& seen) : kind_(kind), seen_(seen) {}
+
+  Task<void> run_master(Host& host, std::vector<PeerId> /*slaves*/) override {
+    ++seen_.masters;
+    return run(kind_, seen_, host);
+  }
+  Task<void> run_slave(Host& host, PeerId /*master*/) override {
+    ++seen_.slaves;
+    return run(kind_, seen_, host);
+  }
+
+ private:
+  static Task<void> run(SyncKind kind, SyncSeen& seen, Host& host) {
+    const Alive alive(seen);
+    if (kind == SyncKind::kThrows) throw std::runtime_error("no grid");
+    for (FrameControl* const camera : host.frame_controls()) {
+      const FrameControlReply reply = co_await camera->adjust_frame(from_ms(1));
+      host.report_alignment(
+          {.camera = camera->camera(), .aligned = reply.is_accepted(), .controls = 1});
+    }
+    while (kind == SyncKind::kGoesOn) co_await host.sleep_for(from_ms(10'000));
+  }
+
+  SyncKind kind_;
+  SyncSeen& seen_;
+};
+
 class CountedSync final : public HostSync {
  public:
   CountedSync(SyncKind kind, SyncSeen& seen) : kind_(kind), seen_(seen) {}
@@ -39,14 +77,6 @@ class CountedSync final : public HostSync {
   }
 
  private:
-  struct Alive {
-    explicit Alive(SyncSeen& which) : seen(which) { ++seen.alive; }
-    ~Alive() { --seen.alive; }
-    Alive(const Alive&) = delete;
-    Alive& operator=(const Alive&) = delete;
-    SyncSeen& seen;
-  };
-
   static Task<void> run(SyncKind kind, SyncSeen& seen, Host& host, PeerId peer) {
     const Alive alive(seen);
     host.report_exchange(
@@ -85,6 +115,7 @@ class MadeUpCameras::MadeUpCamera final : public Camera {
     const std::lock_guard lock(driver_.mutex_);
     driver_.running_.erase(info_.serial);
   }
+  std::shared_ptr<CameraSteering> steering() override { return driver_.steering; }
 
  private:
   MadeUpCameras& driver_;
@@ -213,9 +244,12 @@ void NodeHarness::make_node(const std::string& scenario, PeerId me) {
           .host = me, .oscillator = {monotonic_now(), SteadyTime{}, 25}, .offset = from_ms(300)});
   node_ = std::make_unique<Node>(
       context_, settings, *clock_, *cameras_,
-      [this](const scenarios::Scenario&, const std::string& pipeline) -> std::unique_ptr<HostSync> {
+      [this](const scenarios::Scenario&, const std::string& pipeline) {
         if (pipeline == "unheard_of") throw scenarios::InputError("no such pipeline");
-        return std::make_unique<CountedSync>(sync_, seen_);
+        NodePipeline made{.host_sync = std::make_unique<CountedSync>(sync_, seen_)};
+        if (aligns_)
+          made.capture_alignment = std::make_unique<CountedAlignment>(alignment_, aligned_);
+        return made;
       },
       [this](const std::string& line) { log_.push_back(line); });
   node_->start();

@@ -51,6 +51,8 @@ class MadeUpCameras final : public CameraDriver {
 
   // open() throws this for the camera of that name.
   std::map<std::string, std::string> refusals;
+  // Of all cameras; null: they have none.
+  std::shared_ptr<CameraSteering> steering;
   // What stopping a camera takes, as real ones do.
   std::chrono::milliseconds stop_takes{0};
 
@@ -132,6 +134,9 @@ class NodeHarness : public testing::Test {
   scenarios::Scenario scenario_;
   SyncKind sync_ = SyncKind::kReturns;
   SyncSeen seen_;
+  bool aligns_ = false;  // the pipeline has a capture_alignment, of this kind
+  SyncKind alignment_ = SyncKind::kGoesOn;
+  SyncSeen aligned_;
   Nanoseconds silence_ = kConductorSilence;
   std::vector<std::string> log_;
   std::unique_ptr<Node> node_;

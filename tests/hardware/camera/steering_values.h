@@ -1,0 +1,24 @@
+// What the tests of steered cameras agree on.
+#ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_STEERING_VALUES_H_
+#define SIMBENCH_TESTS_HARDWARE_CAMERA_STEERING_VALUES_H_
+
+#include "hardware/camera/camera.h"
+
+namespace simbench::hardware {
+
+// Frames of 4 ms, in granules of 10 us.
+inline SteeringSettings steering_settings(std::uint32_t latency_frames = 2) {
+  SteeringSettings settings;
+  settings.limits = {.frame_length = std::chrono::milliseconds(4),
+                     .shortest = std::chrono::milliseconds(2),
+                     .longest = std::chrono::milliseconds(20),
+                     .granularity = std::chrono::microseconds(10),
+                     .exposure = std::chrono::milliseconds(1),
+                     .latency_frames = latency_frames,
+                     .allowed = {true, true, true, true}};
+  return settings;
+}
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_TESTS_HARDWARE_CAMERA_STEERING_VALUES_H_
