@@ -30,7 +30,7 @@ struct Row;
 enum class FigureVerdict : std::uint8_t {
   kInside,
   kOutside,  // of a value
-  kHolds,  // of a bound
+  kHolds,    // of a bound
   kFails,
   kTooFewSeeds,
 };

@@ -13,6 +13,7 @@
 
 #include "hardware/net/notice.h"
 #include "recording/counted.h"
+#include "scenarios/frame_limits.h"
 
 namespace simbench::hardware {
 namespace {
@@ -31,16 +32,8 @@ std::string time_of_day() {
 }
 
 SteeringSettings steering_of(const scenarios::Scenario& scenario) {
-  const scenarios::FrameControlModel& model = *scenario.cameras.frame_control;
-  return {.limits = {.frame_length = from_ms(scenario.trigger.period_ms()),
-                     .shortest = from_ms(model.shortest_ms),
-                     .longest = from_ms(model.longest_ms),
-                     .granularity = from_us(model.granularity_us),
-                     .exposure = from_ms(scenario.cameras.exposure_ms),
-                     .latency_frames = static_cast<std::uint32_t>(model.latency_frames),
-                     .allowed = {model.adjust_frame, model.insert_frame, model.frame_length,
-                                 model.start_at}},
-          .insert_stretches = model.insert_stretches};
+  return {.limits = scenarios::frame_limits(scenario),
+          .insert_stretches = scenario.cameras.frame_control->insert_stretches};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "scenarios/frame_limits.h"
 #include "sim/engine/random.h"
 #include "sim/host/sim_host.h"
 
@@ -18,23 +19,12 @@ RandomStream control_draws(std::uint64_t run_seed, std::uint32_t camera, std::ui
 
 }  // namespace
 
-FrameControlLimits frame_limits(const scenarios::Scenario& scenario) {
-  const scenarios::FrameControlModel& model = *scenario.cameras.frame_control;
-  return {.frame_length = from_ms(scenario.trigger.period_ms()),
-          .shortest = from_ms(model.shortest_ms),
-          .longest = from_ms(model.longest_ms),
-          .granularity = from_us(model.granularity_us),
-          .exposure = from_ms(scenario.cameras.exposure_ms),
-          .latency_frames = static_cast<std::uint32_t>(model.latency_frames),
-          .allowed = {model.adjust_frame, model.insert_frame, model.frame_length, model.start_at}};
-}
-
 SimFrameControl::SimFrameControl(SimHost& host, std::uint32_t camera,
                                  const scenarios::Scenario& scenario)
     : host_(host),
       camera_(camera),
       model_(*scenario.cameras.frame_control),
-      requests_(frame_limits(scenario)),
+      requests_(scenarios::frame_limits(scenario)),
       feed_(host) {}
 
 Task<std::optional<FrameArrival>> SimFrameControl::next_frame(SteadyTime deadline) {

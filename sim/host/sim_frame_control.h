@@ -26,9 +26,6 @@
 
 namespace simbench::sim {
 
-// The limits of the cameras of a scenario, which has frame_control.
-FrameControlLimits frame_limits(const scenarios::Scenario& scenario);
-
 class SimFrameControl final : public FrameControl {
  public:
   // `host` must outlive the control.

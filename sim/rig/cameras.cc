@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "scenarios/frame_limits.h"
 #include "sim/host/host_group.h"
-#include "sim/host/sim_frame_control.h"
 
 namespace simbench::sim {
 namespace {
@@ -101,7 +101,7 @@ void Cameras::add_sensors(TrueTime start, Steering steering) {
   const scenarios::FrameControlModel& model = *scenario_.cameras.frame_control;
   const double period_ns = 1e9 / scenario_.trigger.pulse_rate_hz();
   SteeredSensorSettings settings{
-      .limits = frame_limits(scenario_),
+      .limits = scenarios::frame_limits(scenario_),
       .readout = streams_.front().readout,
       .jitter_sigma_ns = model.frame_jitter_sigma_us * 1e3,
       .insert_stretches = model.insert_stretches,

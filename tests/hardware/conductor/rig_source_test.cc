@@ -141,7 +141,8 @@ TEST(RigSource, SaysWhichCamerasCannotBeSteered) {
         R"({"adjust_frame": true, "insert_frame": true, "frame_length": true, "start_at": true,
             "granularity_us": 10, "shortest_ms": 12, "longest_ms": 60, "latency_frames": 2,
             "delay_ms": 0, "delay_exponential_ms": 0, "loss_probability": 0, "insert_stretches": 1,
-            "insert_noise_sigma_us": 0, "start_jitter_sigma_us": 0, "frame_jitter_sigma_us": 0})"}});
+            "insert_noise_sigma_us": 0, "start_jitter_sigma_us": 0, "frame_jitter_sigma_us": 0,
+            "sensor_clock": "camera"})"}});
   RigSource source(rig.rig(), SecretKey(), scenario, {});
   KeptRecording kept;
   EXPECT_THAT([&] { source.record({.seed = 1, .pipeline = kAlignedPipeline}, kept); },

@@ -62,7 +62,9 @@ TEST(ResultsCsv, AChangedWorldIsTheLastColumn) {
 
 TEST(ResultsCsv, PublishedFiguresHaveAColumn) {
   EXPECT_THAT(csv(sample_results()), testing::Not(HasSubstr("published_figures")));
-  const std::string text = csv(sample_figure_results());
+  evaluation::Results results = sample_figure_results();
+  results.published_figures[1].verdict = evaluation::FigureVerdict::kFails;
+  const std::string text = csv(results);
   EXPECT_THAT(text, HasSubstr(",scored_seeds,published_figures"));
   EXPECT_THAT(text, HasSubstr("amd_ms at_most 2.44; amd_ms at_least 3 fails"));
 }

@@ -29,7 +29,7 @@ TEST(PublishedFiguresBlock, HasARowForEachFigure) {
                 "| yoon2021_both | AMD | at most 2.44 ms | 2.00 ms | [1.50, 2.50] ms | 50 % [1-99] "
                 "| too few seeds | a paper |\n"
                 "| yoon2021_both | AMD | at least 3.00 ms | 2.00 ms | [1.50, 2.50] ms | 100 % "
-                "[16-100] | fails | a paper |\n"));
+                "[16-100] | too few seeds | a paper |\n"));
   EXPECT_THAT(text, AllOf(HasSubstr("| 75.0 % | 75.0 % | [50.0, 100] % | 50 % [1-99] | too few"),
                           HasSubstr("Of a bound, holds: "),
                           HasSubstr("- yoon2021_both, AMD at most 2.44 ms: a rig in a hall\n")));
