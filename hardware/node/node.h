@@ -7,10 +7,10 @@
 // Contract
 //  - One session at a time; a second conductor gets the name of the first and since when it
 //    conducts.
-//  - Every frame, adjustment, exchange, outcome and report goes to the session's journal, in order,
-//    by one write() a batch of at most 20 ms: written data survives a kill of the process. A full
-//    disk is a note to the conductor at once; frames are then counted, not kept, and the other hosts
-//    go on.
+//  - Every frame, adjustment, exchange, outcome and report goes to the session's journal, in
+//    order, by one write() a batch of at most 20 ms: written data survives a kill of the process.
+//    A full disk is a note to the conductor at once; frames are then counted, not kept, and the
+//    other hosts go on.
 //  - `log` gets a line for each event.
 //  - Arrival stamps are taken in the camera's thread; everything else runs on `context`'s thread.
 //
