@@ -97,7 +97,7 @@ class PhaseRateCamera {
   Task<bool> correct(std::uint32_t from, double error_ns);
   Task<bool> move(Nanoseconds by);
   void learn_gain();
-  void report();
+  void report(std::uint32_t counter);
 
   SteeredCamera camera_;
   PhaseRateSettings settings_;
@@ -220,8 +220,8 @@ void PhaseRateCamera::learn_gain() {
   knows_gain_ = true;
 }
 
-void PhaseRateCamera::report() {
-  const double error_ns = std::abs(line_.error_ns(quiet_until_));
+void PhaseRateCamera::report(std::uint32_t counter) {
+  const double error_ns = std::abs(line_.error_ns(counter));
   const double largest_step_ns =
       to_ns(only_inserts() ? settings_.insert_band : limits_.granularity);
   const bool is_aligned = error_ns < std::max(to_ns(settings_.tolerance), 2 * largest_step_ns);
@@ -269,7 +269,7 @@ Task<void> PhaseRateCamera::run() {
     const std::uint32_t from = next_effect(frame);
     if (!take_grid(from)) continue;
     learn_gain();
-    report();
+    report(frame.counter);
     const double error_ns = line_.error_ns(from);
     if (is_good(error_ns)) continue;
     const bool is_taken = co_await correct(from, error_ns);

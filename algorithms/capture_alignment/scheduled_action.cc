@@ -6,7 +6,8 @@
 // phase wherever whole frames fill a second. `repeat_s` later, if it is not 0, the cameras start
 // again, which takes out what their oscillators have drifted.
 //
-// A start that was lost leaves the exposures where they were. So where they did not move by more
+// The first start is asked for once the camera runs. A start that was lost leaves the exposures
+// where they were. So where they did not move by more
 // than `moved_us` the first start is repeated, three times in all; a camera that happened to be in
 // phase is then reported as not aligned.
 
@@ -53,6 +54,7 @@ Task<Nanoseconds> phase_step(SteeredCamera& camera) {
 
 Task<void> start_on_schedule(Host& host, FrameControl& control, ScheduledActionSettings settings) {
   SteeredCamera camera(host, control);
+  if (camera.limits().allows(FrameControlKind::kStartAt)) co_await camera.next_frame();
   bool is_aligned = false;
   for (int attempt = 0; attempt < kStartAttempts && !is_aligned; ++attempt) {
     const bool is_taken = co_await start_at_next_second(camera, settings.lead);

@@ -423,6 +423,7 @@ SeedScore captured_score(PipelineScorer& scorer, RecordingCost cost, std::uint64
   if (cost.messages && cost.simulated_seconds > 0) {
     score.packets_per_s = static_cast<double>(*cost.messages) / cost.simulated_seconds;
   }
+  std::ranges::move(score.cost.notes, std::back_inserter(cost.notes));
   score.cost = std::move(cost);
   return score;
 }

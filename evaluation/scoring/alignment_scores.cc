@@ -70,8 +70,13 @@ void AlignmentScores::add(const FrameRecord& frame, const FrameTruth& truth) {
                                         exposure.count(), Nanoseconds::rep{0}, kLongest))});
 }
 
-void AlignmentScores::add(const AlignmentReport& report) {
-  is_aligned_[report.camera] = report.aligned;
+void AlignmentScores::add(const AlignmentReport& report) { reports_[report.camera] = report; }
+
+std::string AlignmentScores::problem() const {
+  const auto found = std::ranges::find_if(reports_, [](const auto& each) {
+    return !each.second.aligned && !each.second.message.empty();
+  });
+  return found != reports_.end() ? found->second.message : "";
 }
 
 std::vector<AlignmentScores::Pulse> AlignmentScores::pulses_of_reference() const {
@@ -210,12 +215,12 @@ void AlignmentScores::add_distances(MetricValues<double>& score) const {
   const auto span_ns =
       static_cast<double>(reference.back().reference_ns - reference.front().reference_ns);
   const double seconds = (span_ns + period_ns_) * kSecondsPerNs;
-  if (!is_aligned_.empty()) score.wrong_locks = 0;
+  if (!reports_.empty()) score.wrong_locks = 0;
   for (std::uint32_t camera = 1; camera < cameras_.size(); ++camera) {
     const std::vector<Distance> found = distances(camera, reference);
     score.exposure_drift_ppm = std::fmax(score.exposure_drift_ppm, drift_ppm(found, seconds));
-    const auto report = is_aligned_.find(camera);
-    if (report == is_aligned_.end() || !report->second) continue;
+    const auto report = reports_.find(camera);
+    if (report == reports_.end() || !report->second.aligned) continue;
     std::vector<double> sizes_us;
     sizes_us.reserve(found.size());
     for (const Distance& each : found) sizes_us.push_back(std::abs(each.us));

@@ -35,6 +35,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "evaluation/scoring/metrics.h"
@@ -50,6 +51,10 @@ class AlignmentScores {
   // A frame of a camera of the layout, in order of delivery.
   void add(const FrameRecord& frame, const FrameTruth& truth);
   void add(const AlignmentReport& report);
+
+  // Why a camera is not aligned, by its newest report: of the first such camera. Empty: all that
+  // were reported are.
+  std::string problem() const;
 
   // Sets the score's exposure_spread_median_ms, exposure_spread_p95_ms, aligned_1_ms_s,
   // aligned_0_1_ms_s, aligned_0_01_ms_s, disturbed_frames, exposure_drift_ppm and wrong_locks.
@@ -100,7 +105,7 @@ class AlignmentScores {
   std::int64_t end_pulse_;
   std::int64_t start_ns_;  // of the first exposure
   std::vector<std::vector<Frame>> cameras_;
-  std::map<std::uint32_t, bool> is_aligned_;  // by camera, as its newest report says
+  std::map<std::uint32_t, AlignmentReport> reports_;  // by camera, the newest
 };
 
 }  // namespace simbench::evaluation

@@ -281,7 +281,13 @@ SeedScore PipelineScorer::finish() {
   score.host_error_ms = host_errors_->mean_absolute_ms();
   host_errors_->time_errors().add_to(score);
   score.host_errors_ms = host_errors_->signed_means_ms();
-  if (alignment_) alignment_->add_to(score);
+  if (alignment_) {
+    alignment_->add_to(score);
+    const std::string problem = alignment_->problem();
+    if (!problem.empty()) {
+      score.cost.notes.push_back("capture_alignment left a camera unaligned: " + problem);
+    }
+  }
   score.offline_amd_ms = second_bank_ ? second_amd_ms() : kNan;
   score.genlock_index_errors = genlock_index_errors_;
   score.failures = std::move(failures_);

@@ -237,6 +237,18 @@ TEST(AlignmentScores, TheNewestReportOfACameraCounts) {
   EXPECT_EQ(capture.scored({lost, aligned}).wrong_locks, 1);
 }
 
+TEST(AlignmentScores, WhyACameraIsUnalignedIsANote) {
+  const SteeredCapture capture;
+  const AlignmentReport moving{.camera = 1, .message = "on its way"};
+  const AlignmentReport refused{.camera = 2, .message = "the camera has no control adjust_frame"};
+  const AlignmentReport aligned{.camera = 1, .aligned = true};
+  EXPECT_THAT(capture.scored({refused, moving, aligned}).cost.notes,
+              testing::ElementsAre("capture_alignment left a camera unaligned: the camera has no "
+                                   "control adjust_frame"));
+  EXPECT_THAT(capture.scored({moving, aligned}).cost.notes, testing::IsEmpty());
+  EXPECT_THAT(capture.scored().cost.notes, testing::IsEmpty());
+}
+
 TEST(AlignmentScores, OfTwoFramesNearOnePulseTheFirstCounts) {
   SteeredCapture capture;
   AlignmentScores scores(capture.layout, Nanoseconds(0));

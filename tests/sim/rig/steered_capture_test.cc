@@ -181,7 +181,7 @@ TEST(SteeredCapture, WhatACameraCannotDoIsRefusedAndChangesNothing) {
   record_steered(scenario, &refused, exposures);
   ASSERT_EQ(exposures.reports.size(), 18U);
   EXPECT_EQ(exposures.reports.front().message,
-            "found a frame of 1.000000 ms, allowed: 17.000000 ms to 66.000000 ms|the camera has no "
+            "found a frame of 1.000000 ms, allowed: 17.000000 ms to 70.000000 ms|the camera has no "
             "control insert_frame|late");
   EXPECT_TRUE(exposures.unusual_ms(0).empty());
 }
