@@ -106,7 +106,7 @@ TEST_F(NodeAlignment, CamerasAreSetAsTheScenarioSays) {
   const FrameControlLimits& limits = settings.steering->limits;
   EXPECT_EQ(limits.frame_length, from_ms(1e3 / 30));
   EXPECT_EQ(limits.shortest, from_ms(17));
-  EXPECT_EQ(limits.longest, from_ms(66));
+  EXPECT_EQ(limits.longest, from_ms(70));
   EXPECT_EQ(limits.granularity, from_us(10));
   EXPECT_EQ(limits.latency_frames, 2U);
   EXPECT_EQ(limits.exposure, from_ms(scenario_.cameras.exposure_ms));
