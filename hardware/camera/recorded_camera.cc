@@ -267,7 +267,7 @@ FrameControlReply RecordedPlayer::start_at(RecordedPlay& play, MonotonicTime at)
   if (!finds_frame(play)) return {.refused = kNotPlaying};
   const PlayedFrame& frame = play.camera->frames[play.next];
   const MonotonicTime wanted = at + Nanoseconds(frame.exposure_lead_ns);
-  const FrameControlReply reply =
+  FrameControlReply reply =
       play.steering->restart(frame.counter, wanted - (play.zero + Nanoseconds(frame.due_ns)));
   changed_.notify_one();
   return reply;
