@@ -15,6 +15,7 @@
 #include "reports/results/summary_document.h"
 #include "reports/text/html_text.h"
 #include "reports/text/json_node.h"
+#include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 #include "scenarios/choices.h"
 

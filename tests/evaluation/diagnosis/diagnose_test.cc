@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/rs_csv.h"
 #include "tests/nonempty.h"
 
 namespace simbench::evaluation {

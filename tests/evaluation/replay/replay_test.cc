@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "recording/rs_csv.h"
 #include "tests/nonempty.h"
 
 namespace simbench::evaluation {

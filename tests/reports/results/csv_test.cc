@@ -1,6 +1,6 @@
 #include "reports/results/csv.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <sstream>
 
@@ -8,6 +8,8 @@
 
 namespace simbench::reports {
 namespace {
+
+using testing::HasSubstr;
 
 TEST(ResultsCsv, OneLinePerPipeline) {
   EXPECT_EQ(csv(sample_results()),

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/sim/at_ms.h"
+
 namespace simbench::sim {
 namespace {
 
