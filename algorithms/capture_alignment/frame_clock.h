@@ -14,11 +14,10 @@
 // stamp is by the clock as it was set.
 //
 // A stamp by readings is off by half of what a request takes longer than its reply, one by arrivals
-// is late by the least time from the middle of an exposure to its arrival. That
-// is a constant of the camera model and is not taken off here: it is the same for all cameras of
-// one model, so it moves them all alike. Where readings take over from arrivals, stamps step by
-// that: has_new_source tells. The first frames have little to fit; their error falls
-// with the number of frames (hull.h).
+// is late by the least time from the middle of an exposure to its arrival. That is a constant of
+// the camera model and is not taken off here: it is the same for all cameras of one model, so it
+// moves them all alike. Where readings take over from arrivals, stamps step by that: has_new_source
+// tells. The first frames have little to fit; their error falls with the number of frames (hull.h).
 //
 // Complexity a frame and memory: those of the switching hull. Source: the same.
 //
@@ -44,7 +43,7 @@ struct ExposedFrame {
   SteadyTime arrival_steady{};
   HostTime arrival{};
   Nanoseconds exposure{};       // its time
-  bool has_new_source = false;  // from here on
+  bool has_new_source = false;  // the first by readings, after some by arrivals
 };
 
 class FrameClock {

@@ -1,10 +1,10 @@
 // The course of one camera's exposures against a grid of the common time: phase and rate together.
 //
 // The exposure of frame n is due at an instant of the grid, at first a multiple of its period; its
-// error is how late it is.
-// Controls move exposures by known amounts. Without these moves the errors of successive frames lie
-// on a line whose slope is the difference of the rates. It is fitted by least squares over the last
-// frames, so that the error of a frame to come is known better than any one stamp tells it.
+// error is how late it is. Controls move exposures by known amounts. Without these moves the errors
+// of successive frames lie on a line whose slope is the difference of the rates. It is fitted by
+// least squares over the last frames, so that the error of a frame to come is known better than any
+// one stamp tells it.
 //
 // Frames are numbered by the camera's counter, so lost ones do no harm. The first frame fixes which
 // instant of the grid it is due at, the nearest; the errors of later ones may exceed a period. The
@@ -63,8 +63,6 @@ class PhaseLine {
   double slope_ns() const;
   // Its standard deviation, by the stamps' noise; infinite with too few frames.
   double slope_sigma_ns() const;
-  // Mean absolute distance of the stamps from the line as it was before each; 0 at first.
-  double noise_ns() const { return noise_ns_; }
   // Whether the last stamps lie off the line together, by more than `least_ns` and their noise.
   bool is_surprised(double least_ns) const;
 
@@ -97,7 +95,7 @@ class PhaseLine {
   double known_precision_ = 0;
   double known_noise_ns_ = 0;
   std::size_t frames_ = 0;
-  double noise_ns_ = 0;
+  double noise_ns_ = 0;  // mean absolute distance of the stamps from the line before each
   std::array<double, kRecent> recent_ns_{};  // last distances from the line, a ring
   std::deque<Move> moves_;
   std::int64_t old_moves_ns_ = 0;

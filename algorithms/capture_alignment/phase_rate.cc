@@ -1,9 +1,10 @@
 // phase_rate: every camera on one grid of the common time, by its own estimate of phase and rate.
 //
-// Where the master's first camera happens to expose is the grid, so that it need not move; the
-// master tells the other hosts one instant of it, again and again, and nothing else. Each host
-// steers its own cameras. A camera's exposures are followed by a line (phase_line.h) that knows all
-// moves, so stamps are averaged over seconds and a frame to come is corrected before it is late:
+// Where one of the master's cameras happens to expose is the grid, so that it need not move: the
+// first that knows its phase. The master tells the other hosts one instant of the grid, again and
+// again, and nothing else. Each host steers its own cameras. A camera's exposures are followed by a
+// line (phase_line.h) that knows all moves, so stamps are averaged over seconds and a frame to come
+// is corrected before it is late:
 //
 //   - once the phase is known, one frame takes up all of its error: the only disturbed one;
 //   - from then on one frame is longer or shorter by a granule or a few, whenever the error that
@@ -41,15 +42,16 @@ namespace simbench {
 namespace {
 
 struct PhaseRateSettings {
-  std::size_t window = 60;  // frames of the line
-  std::uint32_t learn_frames = 20;
-  double dead_band_granules = 0.5;
-  double insert_gain = 2;
-  Nanoseconds insert_band = from_us(85);
-  Nanoseconds horizon = from_seconds(10);
-  Nanoseconds tolerance = from_ms(1);  // "aligned", of what is reported
+  std::size_t window;  // frames of the line
+  std::uint32_t learn_frames;
+  double dead_band_granules;
+  double insert_gain;
+  Nanoseconds insert_band;
+  Nanoseconds horizon;
 };
 
+// Errors below it are reported as aligned, if no step of the camera is larger.
+constexpr Nanoseconds kReportedTolerance = from_ms(1);
 // Of the insert band, that a goal may be wrong by.
 constexpr double kUnknownShare = 0.125;
 
@@ -224,7 +226,7 @@ void PhaseRateCamera::report(std::uint32_t counter) {
   const double error_ns = std::abs(line_.error_ns(counter));
   const double largest_step_ns =
       to_ns(only_inserts() ? settings_.insert_band : limits_.granularity);
-  const bool is_aligned = error_ns < std::max(to_ns(settings_.tolerance), 2 * largest_step_ns);
+  const bool is_aligned = error_ns < std::max(to_ns(kReportedTolerance), 2 * largest_step_ns);
   camera_.report(is_aligned, is_aligned ? "" : "on its way to the grid");
 }
 
@@ -371,13 +373,13 @@ CaptureAlignmentEntry phase_rate() {
                        "ours: a take"),
   };
   entry.make = [](const Parameters& parameters) {
-    PhaseRateSettings settings;
-    settings.window = static_cast<std::size_t>(parameters.number("window_frames"));
-    settings.learn_frames = static_cast<std::uint32_t>(parameters.number("learn_frames"));
-    settings.dead_band_granules = parameters.number("dead_band_granules");
-    settings.insert_band = from_ms(parameters.number("insert_band_ms"));
-    settings.insert_gain = parameters.number("insert_gain");
-    settings.horizon = from_seconds(parameters.number("horizon_s"));
+    const PhaseRateSettings settings{
+        .window = static_cast<std::size_t>(parameters.number("window_frames")),
+        .learn_frames = static_cast<std::uint32_t>(parameters.number("learn_frames")),
+        .dead_band_granules = parameters.number("dead_band_granules"),
+        .insert_gain = parameters.number("insert_gain"),
+        .insert_band = from_ms(parameters.number("insert_band_ms")),
+        .horizon = from_seconds(parameters.number("horizon_s"))};
     return std::make_unique<PhaseRate>(settings);
   };
   return entry;

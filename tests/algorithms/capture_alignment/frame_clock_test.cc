@@ -55,5 +55,27 @@ TEST(FrameClockTest, AStepOfTheSystemClockMovesTheStampsByItAndNothingElse) {
   }
 }
 
+// Stamps by arrivals are late by kExposureToArrival; from the third reading on they are not.
+TEST(FrameClockTest, TellsWhereReadingsTakeOver) {
+  FrameClock clock;
+  int changes = 0;
+  for (std::uint32_t k = 0; k < 20; ++k) {
+    FrameArrival frame = delivered_frame(k, Nanoseconds(0), Nanoseconds(0));
+    if (k >= 5) {
+      const SteadyTime read = frame.arrival_steady;
+      const auto device = (read.time_since_epoch() + from_ms(4'294'900)).count() / 1000;
+      frame.reading = {.device = {static_cast<std::uint32_t>(device)},
+                       .t0_steady = read - from_us(10),
+                       .t1_steady = read + from_us(10)};
+    }
+    const ExposedFrame exposed = clock.at(frame);
+    if (exposed.has_new_source) ++changes;
+    EXPECT_EQ(exposed.has_new_source, k == 7) << k;
+    const Nanoseconds late = k < 7 ? kExposureToArrival : Nanoseconds(0);
+    EXPECT_NEAR(to_ms(exposed.exposed - HostTime(from_ms(1000 + 100.0 * k) + late)), 0, 0.02) << k;
+  }
+  EXPECT_EQ(changes, 1);
+}
+
 }  // namespace
 }  // namespace simbench

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace simbench {
 namespace {
 
@@ -18,7 +20,8 @@ TEST(PhaseLine, ForetellsPhaseAndRateTogether) {
   for (std::uint32_t n = 1000; n < 1050; ++n) line.add(n, exposed(n));
   EXPECT_NEAR(line.slope_ns(), 40, 1e-9);
   EXPECT_NEAR(line.error_ns(1100), 500'000 + 40 * 1100, 1e-3);
-  EXPECT_NEAR(line.noise_ns(), 0, 1e-3);
+  // Stamps of whole nanoseconds, as noise of 1 ns, over 50 frames.
+  EXPECT_NEAR(line.slope_sigma_ns(), std::sqrt(12 / (50.0 * (2500 - 1))), 1e-6);
 }
 
 TEST(PhaseLine, LostFramesDoNoHarm) {
