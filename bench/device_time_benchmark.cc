@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "algorithms/device_time/hull.h"
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
 #include "bench/device_time_worlds.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 namespace {

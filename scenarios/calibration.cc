@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <limits>
-#include <queue>
 #include <random>
-#include <utility>
 #include <vector>
+
+#include "algorithms/ports/time.h"
+#include "laws/generators.h"
+#include "laws/usb_controller.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -32,7 +32,7 @@ double transfer_ms(const Scenario& scenario, const Stream& stream) {
 // U(0, 1), alike with every compiler.
 class Uniform {
  public:
-  double operator()() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
+  double operator()() { return unit_share(generator_()); }
 
  private:
   std::mt19937_64 generator_;  // begins alike each time, too
@@ -48,42 +48,26 @@ struct Offer {
 
 bool sooner(const Offer& a, const Offer& b) { return a.at_ms < b.at_ms; }
 
-// One after the other.
-void transfer_in_order(std::vector<Offer>& offers) {
-  double free_at_ms = -std::numeric_limits<double>::infinity();
-  for (Offer& offer : offers) {
-    free_at_ms = std::max(free_at_ms, offer.at_ms) + offer.transfer_ms;
-    offer.delay_ms += free_at_ms - offer.at_ms;
-  }
-}
-
-// All at once, each with an equal share. `served_ms` is what each has had since the first came.
-void transfer_together(std::vector<Offer>& offers) {
-  using Pending = std::pair<double, Offer*>;  // with what was served when it ends
-  std::priority_queue<Pending, std::vector<Pending>, std::greater<>> pending;
-  double now_ms = 0;
-  double served_ms = 0;
-  const auto serve_until = [&](double end_ms) {
-    while (!pending.empty()) {
-      const auto sharers = static_cast<double>(pending.size());
-      const auto [done_ms, offer] = pending.top();
-      const double done_at_ms = now_ms + (done_ms - served_ms) * sharers;
-      if (done_at_ms > end_ms) {
-        served_ms += (end_ms - now_ms) / sharers;
-        break;
+// Adds to each delay how long the transfer takes. Offers come in order of time; none is lost.
+void transfer(std::vector<Offer>& offers, UsbSharing sharing) {
+  UsbController controller({.bytes_per_ns = 1,
+                            .buffered_frames = static_cast<std::uint32_t>(offers.size()),
+                            .is_fair = sharing == UsbSharing::kFair},
+                           1);
+  const auto complete_before = [&](Nanoseconds limit) {
+    while (controller.next_completion() < limit) {
+      const Nanoseconds now = controller.next_completion();
+      while (const auto done = controller.take_completed(now)) {
+        offers[*done].delay_ms += to_ms(now) - offers[*done].at_ms;
       }
-      offer->delay_ms += done_at_ms - offer->at_ms;
-      served_ms = done_ms;
-      now_ms = done_at_ms;
-      pending.pop();
     }
-    now_ms = end_ms;
   };
-  for (Offer& offer : offers) {
-    serve_until(offer.at_ms);
-    pending.emplace(served_ms + offer.transfer_ms, &offer);
+  for (std::uint32_t i = 0; i < offers.size(); ++i) {
+    const Nanoseconds at = from_ms(offers[i].at_ms);
+    complete_before(at);
+    controller.submit(at, 0, offers[i].transfer_ms * 1e6, i);
   }
-  serve_until(std::numeric_limits<double>::infinity());
+  complete_before(Nanoseconds::max());
 }
 
 // How much later one camera's exposure ends than another's, from the same pulse.
@@ -151,11 +135,7 @@ double mean_transferred_ms(const Scenario& scenario, const Stream& stream) {
   double frames = 0;
   for (std::int64_t pulse = 0; pulse < pulses; ++pulse) {
     std::vector<Offer> offers = offers_of_pulse(scenario, stream, sharers, uniform);
-    if (scenario.usb.sharing == UsbSharing::kFair) {
-      transfer_together(offers);
-    } else {
-      transfer_in_order(offers);
-    }
+    transfer(offers, scenario.usb.sharing);
     for (const Offer& offer : offers) {
       if (!offer.is_measured) continue;
       sum_ms += offer.delay_ms;

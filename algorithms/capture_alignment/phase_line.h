@@ -30,8 +30,8 @@
 #include <cstdint>
 #include <deque>
 
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/ports/time.h"
+#include "laws/line_fit.h"
 
 namespace simbench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/device_time/saturate.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "algorithms/device_time/saturate.h"
 #include "algorithms/registry.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

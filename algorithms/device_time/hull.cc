@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
-#include "algorithms/device_time/saturate.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
+#include "laws/lower_hull.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

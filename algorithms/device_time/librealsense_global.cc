@@ -3,9 +3,9 @@
 #include <deque>
 #include <optional>
 
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/device_time/poll_estimators.h"
 #include "algorithms/registry.h"
+#include "laws/line_fit.h"
 
 namespace simbench {
 namespace {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "algorithms/device_time/estimator_bank.h"
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
-#include "algorithms/median.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
+#include "laws/lower_hull.h"
+#include "laws/median.h"
 
 namespace simbench {
 namespace {

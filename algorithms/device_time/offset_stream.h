@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "algorithms/device_time/device_time.h"
-#include "algorithms/device_time/line_fit.h"
-#include "algorithms/device_time/saturate.h"
+#include "laws/line_fit.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 

@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/device_time/offset_stream.h"
-#include "algorithms/device_time/saturate.h"
-#include "algorithms/median.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
+#include "laws/line_fit.h"
+#include "laws/median.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

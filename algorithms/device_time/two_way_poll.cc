@@ -1,8 +1,8 @@
 #include "algorithms/device_time/hull.h"
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/poll_estimators.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "algorithms/device_time/clock_map.h"
-#include "algorithms/device_time/saturate.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

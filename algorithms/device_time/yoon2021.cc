@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "algorithms/device_time/estimator_bank.h"
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/device_time/offset_stream.h"
-#include "algorithms/device_time/saturate.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
+#include "laws/line_fit.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "algorithms/device_time/saturate.h"
 #include "algorithms/gathering/fronts.h"
 #include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 namespace {

@@ -7,18 +7,18 @@
 #include <stdexcept>
 
 #include "bench/engine_workloads/models.h"
-#include "sim/engine/random.h"
+#include "laws/generators.h"
 
 namespace simbench::bench {
 namespace {
 
 constexpr double kHoldMean_ns = 4e8;
 
-double open_uniform(sim::SplitMix64& generator) {
+double open_uniform(SplitMix64& generator) {
   return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
 }
 
-std::int64_t exponential_ns(sim::SplitMix64& generator, double mean_ns) {
+std::int64_t exponential_ns(SplitMix64& generator, double mean_ns) {
   return static_cast<std::int64_t>(-std::log(open_uniform(generator)) * mean_ns);
 }
 
@@ -31,7 +31,7 @@ WorkloadTables make_tables() {
       {{3'000'000, 1e5}, {1'000'000, 2e5}, {1'000'000, 5e5}, {200'000, 1e5}}};
 
   WorkloadTables tables{};
-  sim::SplitMix64 generator(1);
+  SplitMix64 generator(1);
   for (std::int64_t& delay : tables.hold_ns) delay = 1 + exponential_ns(generator, kHoldMean_ns);
   for (std::int64_t& delay : tables.stage_ns[0]) {
     delay = 2'000'000 + static_cast<std::int64_t>(open_uniform(generator) * 5e4);
@@ -52,12 +52,12 @@ const WorkloadTables& workload_tables() {
 }
 
 std::int64_t first_expiry_ns(std::uint64_t timer) {
-  sim::SplitMix64 generator(1'000'003 + 7919 * timer);
+  SplitMix64 generator(1'000'003 + 7919 * timer);
   return 1 + exponential_ns(generator, kHoldMean_ns);
 }
 
 std::int64_t trigger_phase_ns(std::uint64_t camera) {
-  sim::SplitMix64 generator(77 + camera);
+  SplitMix64 generator(77 + camera);
   return static_cast<std::int64_t>(open_uniform(generator) * 1e4);
 }
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <span>
 
-#include "algorithms/device_time/lower_hull.h"
 #include "evaluation/replay/replay.h"
+#include "laws/lower_hull.h"
 #include "recording/counted.h"
 
 namespace simbench::evaluation {

@@ -88,7 +88,7 @@ std::vector<double> one_way_table(const std::vector<double>& round_trips);
 // changes; rise_ms shows that. The rank correlation (Spearman's) is between the excess of a frame
 // and of the next by the counter.
 //
-// Source: docs/reference/device_time.md section 1 (hull); algorithms/device_time/lower_hull.h.
+// Source: docs/reference/device_time.md section 1 (hull); laws/lower_hull.h.
 // Errors: FitError: too few frames, device stamps or arrivals that go back.
 inline constexpr std::size_t kFewestFrames = 100;
 inline constexpr double kBlockS = 30;

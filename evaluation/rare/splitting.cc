@@ -12,18 +12,16 @@
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/run/jobs.h"
+#include "laws/generators.h"
 
 namespace simbench::evaluation {
 namespace {
 
-// A hash of numbers in turn: splitmix64's finaliser over each.
+// A hash of numbers in turn.
 std::uint64_t hash_of(std::initializer_list<std::uint64_t> numbers) {
-  std::uint64_t hash = 0x9E3779B97F4A7C15;
+  std::uint64_t hash = SplitMix64::kIncrement;
   for (const std::uint64_t number : numbers) {
-    hash += number + 0x9E3779B97F4A7C15;
-    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9;
-    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EB;
-    hash ^= hash >> 31;
+    hash = SplitMix64::mix(hash + number + SplitMix64::kIncrement);
   }
   return hash;
 }

@@ -5,11 +5,11 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/device_time/saturate.h"
 #include "algorithms/device_time/unwrap.h"
 #include "evaluation/replay/replay.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
+#include "laws/saturate.h"
 
 namespace simbench::evaluation {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "laws/normal_law.h"
+
 namespace simbench::evaluation {
 namespace {
-
-double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 // The mean range of 0 and n standard normals, by Simpson's rule; beyond 10 nothing is left.
 double mean_range_with_zero(std::int64_t n) {
@@ -15,7 +15,7 @@ double mean_range_with_zero(std::int64_t n) {
   constexpr double kStep = kEnd / kSteps;
   double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
-    const double value = 1 - std::pow(normal_cdf(i * kStep), static_cast<double>(n));
+    const double value = 1 - std::pow(normal_probability(i * kStep), static_cast<double>(n));
     const double weight = i == 0 || i == kSteps ? 1 : (i % 2 == 1 ? 4 : 2);
     sum += weight * value;
   }

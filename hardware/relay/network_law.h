@@ -1,8 +1,7 @@
 // What a scenario's network does to each message: the law that the relay applies to real messages.
 //
-// The same law as the simulated network's (sim/network/network.h): a latency per direction of a
-// link (fixed, exponential and rare spikes, or drawn from a table; half of the link's asymmetry
-// with its sign), and
+// The same law as the simulated network's (laws/message_law.h): a latency per direction of a link,
+// half of the link's asymmetry with its sign, and
 //
 //  - datagrams: lost, doubled (the copy has a latency of its own), reordered (delayed by up to
 //    reorder_max_ms); the others keep their order;
@@ -47,9 +46,6 @@ struct LawCounts {
 // One direction of a link.
 class NetworkLaw {
  public:
-  // After so many a stream message is delivered; the simulated stream would break.
-  static constexpr int kMaxRetransmissions = 15;
-
   NetworkLaw(const scenarios::Network& network, std::uint64_t seed, PeerId from, PeerId to);
 
   // When a datagram that came at `received` arrives: never, once, or twice.
@@ -66,7 +62,7 @@ class NetworkLaw {
 
   scenarios::Network network_;
   std::uint64_t key_;
-  double fixed_ms_;
+  double half_asymmetry_ms_;
   MonotonicTime last_datagram_ = MonotonicTime::min();
   MonotonicTime last_stream_ = MonotonicTime::min();
   LawCounts counts_;

@@ -24,9 +24,6 @@
 
 namespace simbench::sim {
 
-// The probability that a standard normal value is below z.
-inline double normal_probability(double z) { return std::erfc(-z / std::numbers::sqrt2) / 2; }
-
 class NormalProcess {
  public:
   // `kind` and `number` tell the processes of a run apart; `step` is positive.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laws/normal_law.h"
+
 namespace simbench::sim {
 namespace {
 

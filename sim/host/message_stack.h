@@ -39,10 +39,10 @@
 #include <optional>
 
 #include "algorithms/ports/exchange.h"
+#include "laws/quantile_table.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/normal_process.h"
-#include "sim/engine/quantile_table.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "scenarios/network_laws.h"
+
 namespace simbench::sim {
 namespace {
 
@@ -44,43 +46,35 @@ double asymmetry_ms(const scenarios::Network& network, const scenarios::Link& li
 LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from,
                          PeerId to, double session_latency_ms)
     : network_(&network),
-      table_ms_(network.latency_quantiles_ms),
+      law_(scenarios::latency_law(network)),
       bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)),
       switches_(switches_between(network, from, to)) {
   if (network.cross_traffic_share > 0) {
     foreign_frame_ms_ = kForeignFrameBits / (network.bandwidth_mbit_per_s * 1e3);
   }
-  const bool is_table = !table_ms_.empty();
   const scenarios::Link* const stated = stated_link(network, from, to);
   static const scenarios::Link unstated;
   const scenarios::Link& link = stated == nullptr ? unstated : *stated;
   const double asymmetry = asymmetry_ms(network, link, run_seed, from, to) / 2;
   const double stated_ms = link.latency_fixed_ms.value_or(network.latency_fixed_ms);
-  exponential_ms_ = link.latency_exponential_ms.value_or(network.latency_exponential_ms);
-  fixed_ms_ = (is_table ? 0 : stated_ms) + session_latency_ms + asymmetry;
-  const double least_ms = is_table ? table_ms_.least() : stated_ms;
+  law_.exponential_ms = link.latency_exponential_ms.value_or(network.latency_exponential_ms);
+  if (law_.table_ms.empty()) law_.fixed_ms = stated_ms;
+  law_.fixed_ms += session_latency_ms;
+  law_.fixed_ms += asymmetry;
+  const double least_ms = law_.table_ms.empty() ? stated_ms : law_.table_ms.least();
   cable_ = from_ms(std::max(0.0, least_ms + asymmetry));
 }
 
 Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
-  double latency_ms =
-      table_ms_.empty() ? draw_parametric_ms(draw) : fixed_ms_ + table_ms_.value_at(draw.uniform());
+  double latency_ms = law_.draw_ms(draw);
   latency_ms += draw_residence_ms(draw);
   if (bursts_.active(left)) latency_ms += network_->burst.latency_ms;
   return from_ms(std::max(0.0, latency_ms));
 }
 
-double LinkLatency::draw_parametric_ms(RandomStream& draw) const {
-  const double latency_ms = fixed_ms_ + draw.exponential(exponential_ms_);
-  // Both are always drawn, so that later draws stay the same.
-  const bool has_spike = draw.chance(network_->spike_probability);
-  const double spike_ms = draw.uniform(0, network_->spike_max_ms);
-  return has_spike ? latency_ms + spike_ms : latency_ms;
-}
-
 double LinkLatency::draw_residence_ms(RandomStream& draw) const {
   double residence_ms = switches_ * network_->switch_residence_ms;
-  for (int i = 1; i < switches_; ++i) residence_ms += draw.exponential(exponential_ms_);
+  for (int i = 1; i < switches_; ++i) residence_ms += draw.exponential(law_.exponential_ms);
   if (foreign_frame_ms_ == 0) return residence_ms;
   for (int i = 0; i < switches_; ++i) {
     while (draw.chance(network_->cross_traffic_share)) {

@@ -1,12 +1,8 @@
 // The latency of one direction of a link, without the queues of messages at the switches' ports.
 //
-//   fixed +- asymmetry / 2 + Exp + spike (with a probability) + burst (while one lasts) + session
+//   law (fixed, Exp and spikes, or a table: laws/message_law.h) +- asymmetry / 2
+//   + burst (while one lasts) + session
 //   + for each switch on the way: residence + wait for foreign traffic, for each but the first: Exp
-//
-// or, where the scenario has a table of measured latencies (network/latency_quantiles_ms), which
-// takes the place of fixed, Exp and spike:
-//
-//   table +- asymmetry / 2 + burst (while one lasts) + session
 //
 // The asymmetry is the fixed latency from the host of lower number to that of higher number minus
 // the fixed latency back: one draw per link, and that of the lower host's port less that of the
@@ -27,9 +23,9 @@
 #include <cstdint>
 
 #include "algorithms/ports/exchange.h"
+#include "laws/message_law.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
-#include "sim/engine/quantile_table.h"
 #include "sim/engine/random.h"
 #include "sim/network/load.h"
 
@@ -37,11 +33,6 @@ namespace simbench::sim {
 
 // The key of the bursts on links.
 inline constexpr ComponentKey kLinkBursts("network: bursts");
-
-// Numbers the directions of all links.
-constexpr std::uint64_t direction_of(PeerId from, PeerId to) {
-  return (static_cast<std::uint64_t>(from) << 32) | to;
-}
 
 class LinkLatency {
  public:
@@ -56,15 +47,11 @@ class LinkLatency {
   Nanoseconds draw(RandomStream& draw, TrueTime left);
 
  private:
-  // Without bursts.
-  double draw_parametric_ms(RandomStream& draw) const;
   // In all switches on the way.
   double draw_residence_ms(RandomStream& draw) const;
 
   const scenarios::Network* network_;
-  QuantileTable table_ms_;
-  double fixed_ms_ = 0;  // of every message
-  double exponential_ms_ = 0;
+  LatencyLaw law_;
   Nanoseconds cable_{};
   BurstProcess bursts_;
   int switches_ = 1;             // on the way

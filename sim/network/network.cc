@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "scenarios/network_laws.h"
 
 namespace simbench::sim {
 namespace {
@@ -41,6 +42,7 @@ Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint
                  std::size_t hosts, const RunLoad& load, const Outages& outages)
     : engine_(engine),
       parameters_(parameters),
+      datagram_law_(scenarios::datagram_law(parameters)),
       run_seed_(run_seed),
       load_(load),
       outages_(outages),
@@ -337,23 +339,19 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   RandomStream draw = path.draws.stream(segment.first);
   const TrueTime arrival = at + path.latency.draw(draw, segment.left);
   const TrueTime copy_arrival = at + path.latency.draw(draw, segment.left);
-  const bool is_lost = draw.chance(parameters_.loss_probability);
-  const bool is_duplicated = draw.chance(parameters_.duplicate_probability);
-  const bool is_reordered = draw.chance(parameters_.reorder_probability);
-  const double detour_ms = draw.uniform(0, parameters_.reorder_max_ms);
-  if (is_lost || outages_.unreachable(path.from, segment.left)) {
+  const DatagramFate fate = datagram_law_.draw(draw);
+  if (fate.is_lost || outages_.unreachable(path.from, segment.left)) {
     report(segment, std::nullopt);
     release(id);
     return;
   }
-  const TrueTime in_order = std::max(arrival, path.last_arrival);
-  if (!is_reordered) path.last_arrival = in_order;
-  const TrueTime arrives = is_reordered ? in_order + from_ms(detour_ms) : in_order;
-  report(segment, outages_.unreachable(path.to, arrives) ? std::nullopt : std::optional(arrives));
+  const auto arrives = fate.arrivals(arrival, copy_arrival, path.last_arrival);
+  report(segment, outages_.unreachable(path.to, arrives.first) ? std::nullopt
+                                                               : std::optional(arrives.first));
   // Before the message itself is corrected.
-  const SegmentId duplicate = is_duplicated ? keep(Segment(segment)) : id;
-  deliver(id, arrives, 0);
-  if (is_duplicated) deliver(duplicate, std::max(copy_arrival, in_order), 1);
+  const SegmentId duplicate = fate.is_duplicated ? keep(Segment(segment)) : id;
+  deliver(id, arrives.first, 0);
+  if (fate.is_duplicated) deliver(duplicate, arrives.copy, 1);
 }
 
 // Schedules the arrival of a datagram, corrected for its time in the switch.

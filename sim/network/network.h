@@ -157,8 +157,6 @@ class Network : private EventHandler {
     Inbox inbox;
     std::optional<Nagle> nagle;  // streams under Nagle's algorithm only
   };
-  // As Linux' tcp_retries2.
-  static constexpr int kMaxRetransmissions = 15;
   enum EventKind : std::uint16_t {
     kAtSwitch,
     kArrival,
@@ -230,6 +228,7 @@ class Network : private EventHandler {
 
   Engine& engine_;
   const scenarios::Network& parameters_;
+  DatagramLaw datagram_law_;
   std::uint64_t run_seed_;
   RunLoad load_;
   const Outages& outages_;

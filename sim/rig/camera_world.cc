@@ -273,13 +273,13 @@ void CameraWorld::transfer(Bus& bus, TrueTime before) {
   for (;;) {
     if (are_single) next = pass(bus, next, before);
     const TrueTime offered = next != bus.offers.end() ? next->at : TrueTime::max();
-    const TrueTime woken = bus.controller.wake_up();
+    const TrueTime woken(bus.controller.wake_up());
     if (std::min(offered, woken) >= before) break;
     if (offered < woken) {
       offer(bus, *next++);
       continue;
     }
-    while (const auto frame = bus.controller.take_completed(woken)) {
+    while (const auto frame = bus.controller.take_completed(woken.time_since_epoch())) {
       transferred_.push_back(step(woken, woken, *frame));
     }
   }
@@ -301,7 +301,8 @@ auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime befo
     -> std::vector<Step>::iterator {
   for (; next != bus.offers.end() && next->at < before; ++next) {
     const double transfer_ns = transfer_ns_of_kind_[next->place % transfer_ns_of_kind_.size()];
-    const TrueTime done = bus.controller.pass(next->at, next->place, transfer_ns, before);
+    const TrueTime done(bus.controller.pass(next->at.time_since_epoch(), next->place, transfer_ns,
+                                            before.time_since_epoch()));
     if (done == TrueTime::max()) break;
     transferred_.push_back(step(done, done, next->frame));
   }
@@ -311,8 +312,8 @@ auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime befo
 void CameraWorld::offer(Bus& bus, const Step& offer) {
   CameraFrame& frame = frames_[offer.frame].frame;
   const CameraStream& stream = cameras_.stream(frame.stream);
-  if (bus.controller.submit(offer.at, stream.index_on_controller, stream.bytes, offer.frame))
-    return;
+  const Nanoseconds at = offer.at.time_since_epoch();
+  if (bus.controller.submit(at, stream.index_on_controller, stream.bytes, offer.frame)) return;
   frame.fate = FrameFate::kLostOnUsb;
   ended_.push_back(step(offer.at, offer.at, offer.frame));
 }

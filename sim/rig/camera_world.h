@@ -46,6 +46,7 @@
 #include <optional>
 #include <vector>
 
+#include "laws/usb_controller.h"
 #include "recording/recording.h"
 #include "recording/world_observer.h"
 #include "scenarios/scenario.h"
@@ -58,7 +59,6 @@
 #include "sim/rig/reference_pulses.h"
 #include "sim/trigger/trigger_tree.h"
 #include "sim/usb/host_stack.h"
-#include "sim/usb/usb_controller.h"
 
 namespace simbench::sim {
 

@@ -189,13 +189,14 @@ Nanoseconds Cameras::first_exposure(std::size_t camera) const {
 std::vector<UsbController> Cameras::make_controllers() const {
   const scenarios::Usb& usb = scenario_.usb;
   const std::size_t kinds = scenario_.cameras.streams.size();
-  const UsbSettings settings{.sharing = usb.sharing,
-                             .bytes_per_ns = bytes_per_ns(usb),
-                             .buffered_frames = static_cast<std::uint32_t>(usb.buffered_frames),
-                             .streams_per_camera = static_cast<std::uint32_t>(kinds)};
-  return std::vector<UsbController>(
-      controllers_,
-      UsbController(settings, static_cast<std::size_t>(usb.cameras_per_controller) * kinds));
+  const std::size_t streams = static_cast<std::size_t>(usb.cameras_per_controller) * kinds;
+  const bool is_dedicated = usb.sharing == scenarios::UsbSharing::kDedicated;
+  const UsbSettings settings{
+      .bytes_per_ns = bytes_per_ns(usb),
+      .buffered_frames = static_cast<std::uint32_t>(usb.buffered_frames),
+      .streams_per_lane = static_cast<std::uint32_t>(is_dedicated ? kinds : streams),
+      .is_fair = usb.sharing == scenarios::UsbSharing::kFair};
+  return std::vector<UsbController>(controllers_, UsbController(settings, streams));
 }
 
 }  // namespace simbench::sim

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "algorithms/ports/capture_alignment.h"
+#include "laws/usb_controller.h"
 #include "recording/recording.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
@@ -34,7 +35,6 @@
 #include "sim/camera/steered_sensor.h"
 #include "sim/engine/random.h"
 #include "sim/usb/host_stack.h"
-#include "sim/usb/usb_controller.h"
 
 namespace simbench::sim {
 

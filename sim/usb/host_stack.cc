@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laws/normal_law.h"
 #include "sim/engine/normal_process.h"
 
 namespace simbench::sim {

@@ -25,9 +25,9 @@
 
 #include <cstdint>
 
+#include "laws/quantile_table.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
-#include "sim/engine/quantile_table.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {

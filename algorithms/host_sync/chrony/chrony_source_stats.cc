@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/median.h"
 #include "algorithms/ports/assert.h"
+#include "laws/median.h"
 
 namespace simbench {
 namespace {

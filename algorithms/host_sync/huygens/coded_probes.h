@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/ports/time.h"
+#include "laws/line_fit.h"
 
 namespace simbench {
 

@@ -20,9 +20,9 @@
 #include <variant>
 #include <vector>
 
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/host_sync/huygens/coded_probes.h"
 #include "algorithms/ports/host.h"
+#include "laws/line_fit.h"
 
 namespace simbench {
 

@@ -12,11 +12,11 @@
 #include <deque>
 #include <optional>
 
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/host_sync/huygens/coded_probes.h"
 #include "algorithms/host_sync/huygens/huygens.h"
 #include "algorithms/host_sync/huygens/huygens_messages.h"
 #include "algorithms/host_sync/huygens/raw_clock.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 

@@ -18,10 +18,10 @@
 #include <optional>
 #include <string>
 
-#include "algorithms/device_time/line_fit.h"
 #include "algorithms/host_sync/clock_steering.h"
 #include "algorithms/host_sync/stamps.h"
 #include "algorithms/ports/host.h"
+#include "laws/line_fit.h"
 
 namespace simbench {
 

@@ -11,6 +11,7 @@
 #include "algorithms/host_sync/messages.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
+#include "laws/normal_law.h"
 
 namespace simbench {
 namespace {
@@ -18,9 +19,6 @@ namespace {
 constexpr Nanoseconds kAnswerTimeout{500'000'000};
 // Beyond so many standard deviations the tail of a normal is an exponential, and underflows.
 constexpr double kFarTail = 25;
-
-double normal_density(double x) { return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi); }
-double normal_below(double x) { return std::erfc(-x / std::numbers::sqrt2) / 2; }
 
 // The master's end towards one slave.
 Task<void> serve_pulses(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,
@@ -110,7 +108,7 @@ double common_view_correction_ns(CommonViewCorrection measured, double bound_ns)
   const double low = (-bound_ns - measured.offset_ns) / measured.sigma_ns;
   const double high = (bound_ns - measured.offset_ns) / measured.sigma_ns;
   if (high < -kFarTail) return std::max(-bound_ns, bound_ns + measured.sigma_ns / high);
-  const double inside = normal_below(high) - normal_below(low);
+  const double inside = normal_probability(high) - normal_probability(low);
   const double shift = (normal_density(low) - normal_density(high)) / inside;
   return std::clamp(measured.offset_ns + measured.sigma_ns * shift, 0.0, nearest_ns);
 }

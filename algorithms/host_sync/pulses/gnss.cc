@@ -66,19 +66,12 @@ void GnssEstimator::add(Nanoseconds gnss, SteadyTime seen) {
 
 std::optional<ClockLine> GnssEstimator::line() const {
   if (pulses_ < kFewestPulses || lateness_.span() <= 0) return std::nullopt;
-  // The edge over the middle of the window.
-  const std::vector<Envelope::Point>& hull = lateness_.vertices();
-  const double middle = (hull.front().x + hull.back().x) / 2;
-  std::size_t right = 1;
-  while (hull[right].x < middle) ++right;
-  const Envelope::Point a = hull[right - 1];
-  const Envelope::Point b = hull[right];
-  const double slope = (b.y - a.y) / (b.x - a.x);
+  const auto [first, slope] = middle_line(lateness_.vertices());
   if (std::abs(slope) > kMostSlope) return std::nullopt;
   // Steady time runs 1 + slope while GNSS time runs 1.
-  const auto seen_ns = static_cast<std::int64_t>(std::llround(a.x + a.y));
+  const auto seen_ns = static_cast<std::int64_t>(std::llround(first.x + first.y));
   return ClockLine{.at = zero_seen_ + Nanoseconds(seen_ns),
-                   .value = HostTime(zero_gnss_ + from_ns(a.x)),
+                   .value = HostTime(zero_gnss_ + from_ns(first.x)),
                    .rate_ppb = (1 / (1 + slope) - 1) * 1e9};
 }
 

@@ -18,6 +18,7 @@
 #include "algorithms/host_sync/clock_steering.h"
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "algorithms/ports/host_sync.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 

@@ -17,6 +17,7 @@
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "algorithms/ports/host.h"
 #include "algorithms/ports/time.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 

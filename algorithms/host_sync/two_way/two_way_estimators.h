@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "algorithms/host_sync/clock_steering.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 
@@ -45,59 +46,6 @@ class TwoWayEstimator {
   virtual bool add(const TwoWayExchange& exchange) = 0;
   // Nothing before there are enough exchanges.
   virtual std::optional<ClockLine> line() = 0;
-};
-
-// The lower convex envelope of the newest points of a stream, in bounded memory.
-//
-// A delay can only make a stamp later, so the points (time, stamp difference) of a stream lie above
-// their line without delay; the edges of their lower convex hull touch that line from above. For an
-// upper envelope negate y.
-//
-// The points of the last `window` are kept, to within one part of kParts: each part of the window
-// has a hull of its own, and the oldest part is dropped as a whole. A part with kPartVertices hull
-// vertices ends early, so memory is at most (kParts + 1) * kPartVertices points.
-//
-// Contract: x does not decrease (a smaller x counts as the last one); units are the caller's.
-// Complexity: add() amortised O(1); the first query after an add O(vertices), usually some tens.
-// Source: docs/reference/host_sync.md section 1 (two-way convex hull).
-//
-//   Envelope envelope(60e9);
-//   envelope.add(x, y);
-//   Envelope::Point touched = envelope.touch(slope);  // the vertex that the line rests on
-class Envelope {
- public:
-  struct Point {
-    double x = 0;
-    double y = 0;
-  };
-  static constexpr int kParts = 8;
-  static constexpr std::size_t kPartVertices = 64;
-
-  explicit Envelope(double window) : part_length_(window / kParts) {}
-
-  void add(double x, double y);
-  void clear();
-  bool empty() const { return parts_.empty(); }
-  // From the first kept point to the last.
-  double span() const;
-
-  // The vertices, in order of x, with strictly growing slopes between them.
-  const std::vector<Point>& vertices() const;
-  // The vertex with the smallest y - slope * x. Not for an empty envelope.
-  Point touch(double slope) const;
-  // The envelope at x; nothing outside of its points.
-  std::optional<double> at(double x) const;
-
- private:
-  struct Part {
-    double begin = 0;
-    std::vector<Point> hull;
-  };
-
-  double part_length_;
-  std::deque<Part> parts_;
-  mutable std::vector<Point> vertices_;
-  mutable bool is_current_ = false;
 };
 
 // The two-way convex hull: offset and rate of a remote clock together, from the bounds of a window.

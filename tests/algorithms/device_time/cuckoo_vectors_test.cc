@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/unwrap.h"
+#include "laws/lower_hull.h"
 #include "tests/data/test_data.h"
 
 namespace simbench {

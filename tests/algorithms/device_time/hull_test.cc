@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/unwrap.h"
+#include "laws/lower_hull.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {

@@ -11,8 +11,8 @@
 
 #include "algorithms/device_time/offset_filters.h"
 #include "algorithms/device_time/yoon2021.h"
-#include "algorithms/median.h"
 #include "bench/device_time_worlds.h"
+#include "laws/median.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {

@@ -52,11 +52,5 @@ TEST(NormalProcess, NumbersTellProcessesApart) {
   EXPECT_NE(one.at(at_ms(1)), other.at(at_ms(1)));
 }
 
-TEST(NormalProbability, OfKnownScores) {
-  EXPECT_EQ(normal_probability(0), 0.5);
-  EXPECT_NEAR(normal_probability(1.959963985), 0.975, 1e-9);
-  EXPECT_NEAR(normal_probability(-1.959963985), 0.025, 1e-9);
-}
-
 }  // namespace
 }  // namespace simbench::sim

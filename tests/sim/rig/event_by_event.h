@@ -102,18 +102,19 @@ class EventByEvent {
     CameraFrame& frame = frames_[ticket];
     const CameraStream& stream = cameras_.stream(frame.stream);
     frame.offered = engine_.now();
-    if (!buses_[stream.controller].submit(engine_.now(), stream.index_on_controller, stream.bytes,
-                                          ticket)) {
+    if (!buses_[stream.controller].submit(frame.offered.time_since_epoch(),
+                                          stream.index_on_controller, stream.bytes, ticket)) {
       return end(ticket, FrameFate::kLostOnUsb);
     }
     plan_transfer(stream.controller);
   }
   void plan_transfer(std::uint32_t bus) {
-    const TrueTime at = buses_[bus].wake_up();
+    const TrueTime at(buses_[bus].wake_up());
     if (at == TrueTime::max()) return;
     engine_.call_at(at, [this, bus, at] {
-      if (buses_[bus].wake_up() != at) return;  // out of date
-      while (const auto ticket = buses_[bus].take_completed(at)) deliver(*ticket);
+      if (buses_[bus].wake_up() != at.time_since_epoch()) return;  // out of date
+      while (const auto ticket = buses_[bus].take_completed(at.time_since_epoch()))
+        deliver(*ticket);
       plan_transfer(bus);
     });
   }

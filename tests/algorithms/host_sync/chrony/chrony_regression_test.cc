@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "algorithms/host_sync/chrony/chrony_source_stats.h"
-#include "algorithms/median.h"
+#include "laws/median.h"
 #include "tests/data/test_data.h"
 
 namespace simbench {

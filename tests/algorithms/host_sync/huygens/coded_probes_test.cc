@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "algorithms/device_time/lower_hull.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 namespace {

@@ -9,14 +9,14 @@
 //
 //   const QuantileTable delay_ms(scenario.usb.delivery_quantiles_ms);
 //   double ms = delay_ms.value_at(stream.uniform());
-#ifndef SIMBENCH_SIM_ENGINE_QUANTILE_TABLE_H_
-#define SIMBENCH_SIM_ENGINE_QUANTILE_TABLE_H_
+#ifndef SIMBENCH_LAWS_QUANTILE_TABLE_H_
+#define SIMBENCH_LAWS_QUANTILE_TABLE_H_
 
 #include <algorithm>
 #include <cstddef>
 #include <span>
 
-namespace simbench::sim {
+namespace simbench {
 
 class QuantileTable {
  public:
@@ -39,6 +39,6 @@ class QuantileTable {
   std::span<const double> table_;
 };
 
-}  // namespace simbench::sim
+}  // namespace simbench
 
-#endif  // SIMBENCH_SIM_ENGINE_QUANTILE_TABLE_H_
+#endif  // SIMBENCH_LAWS_QUANTILE_TABLE_H_

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/device_time/lower_hull.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 namespace {

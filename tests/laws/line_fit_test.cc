@@ -1,4 +1,4 @@
-#include "algorithms/device_time/line_fit.h"
+#include "laws/line_fit.h"
 
 #include <gtest/gtest.h>
 

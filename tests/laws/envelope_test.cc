@@ -5,7 +5,7 @@
 #include <boost/random/uniform_01.hpp>
 #include <vector>
 
-#include "algorithms/host_sync/two_way/two_way_estimators.h"
+#include "laws/lower_hull.h"
 
 namespace simbench {
 namespace {

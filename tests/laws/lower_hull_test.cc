@@ -1,4 +1,4 @@
-#include "algorithms/device_time/lower_hull.h"
+#include "laws/lower_hull.h"
 
 #include <gmock/gmock.h>
 

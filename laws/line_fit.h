@@ -14,16 +14,16 @@
 //   sums.add({.x = 0, .y = 5});
 //   sums.add({.x = 10, .y = 7});
 //   sums.line().at(20);   // 9
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_LINE_FIT_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_LINE_FIT_H_
+#ifndef SIMBENCH_LAWS_LINE_FIT_H_
+#define SIMBENCH_LAWS_LINE_FIT_H_
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "algorithms/device_time/saturate.h"
 #include "algorithms/ports/assert.h"
+#include "laws/saturate.h"
 
 namespace simbench {
 
@@ -32,8 +32,9 @@ struct LinePoint {
   std::int64_t y = 0;
 };
 
-// Of points with different x.
-inline double slope_between(LinePoint a, LinePoint b) {
+// The slope from one point to another, whose x differ.
+template <class Point>
+double slope_between(const Point& a, const Point& b) {
   return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
 }
 
@@ -191,4 +192,4 @@ class LineWindow {
 
 }  // namespace simbench
 
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_LINE_FIT_H_
+#endif  // SIMBENCH_LAWS_LINE_FIT_H_

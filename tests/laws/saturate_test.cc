@@ -1,4 +1,4 @@
-#include "algorithms/device_time/saturate.h"
+#include "laws/saturate.h"
 
 #include <gtest/gtest.h>
 

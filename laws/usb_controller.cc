@@ -1,25 +1,23 @@
-#include "sim/usb/usb_controller.h"
+#include "laws/usb_controller.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "algorithms/ports/assert.h"
 
-namespace simbench::sim {
+namespace simbench {
 namespace {
 
 // Two transfers of the same size that start together end together: a thousandth of a byte is far
 // below what a nanosecond carries, and far above the rounding of the sums.
 constexpr double kByteTolerance = 1e-3;
 
-double as_ns(TrueTime t) { return static_cast<double>(t.time_since_epoch().count()); }
-
 }  // namespace
 
 UsbController::UsbController(const UsbSettings& settings, std::size_t streams)
     : settings_(settings),
       pending_of_stream_(streams, 0),
-      lane_free_at_ns_(streams / settings.streams_per_camera + 1,
+      lane_free_at_ns_(streams / settings.streams_per_lane + 1,
                        std::numeric_limits<double>::lowest()) {
   SIMBENCH_ASSERT(settings.bytes_per_ns > 0, "a USB controller needs bandwidth");
 }
@@ -28,30 +26,25 @@ bool UsbController::later(const Transfer& a, const Transfer& b) {
   return a.done_at != b.done_at ? a.done_at > b.done_at : a.order > b.order;
 }
 
-void UsbController::serve_until(TrueTime now) {
+void UsbController::serve_until(Nanoseconds now) {
   if (!pending_.empty()) {
-    served_bytes_ += static_cast<double>((now - served_until_).count()) * settings_.bytes_per_ns /
-                     static_cast<double>(pending_.size());
+    served_bytes_ +=
+        to_ns(now - served_until_) * settings_.bytes_per_ns / static_cast<double>(pending_.size());
   } else {
     served_bytes_ = 0;  // no pending transfer uses the sum: keep it small, and so exact
   }
   served_until_ = now;
 }
 
-bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::uint32_t ticket) {
+bool UsbController::submit(Nanoseconds now, std::size_t stream, double bytes,
+                           std::uint32_t ticket) {
   if (pending_of_stream_[stream] >= settings_.buffered_frames) return false;
   double done_at = 0;
-  switch (settings_.sharing) {
-    case UsbSharing::kDedicated:
-      done_at = queue_on_lane(stream / settings_.streams_per_camera, now, bytes);
-      break;
-    case UsbSharing::kFifo:
-      done_at = queue_on_lane(0, now, bytes);
-      break;
-    case UsbSharing::kFair:
-      serve_until(now);
-      done_at = served_bytes_ + bytes;
-      break;
+  if (settings_.is_fair) {
+    serve_until(now);
+    done_at = served_bytes_ + bytes;
+  } else {
+    done_at = queue_on_lane(stream / settings_.streams_per_lane, now, bytes);
   }
   ++pending_of_stream_[stream];
   pending_.push_back({done_at, submissions_++, ticket, static_cast<std::uint32_t>(stream)});
@@ -60,18 +53,18 @@ bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::
   return true;
 }
 
-TrueTime UsbController::next_completion() const {
-  if (pending_.empty()) return TrueTime::max();
+Nanoseconds UsbController::next_completion() const {
+  if (pending_.empty()) return Nanoseconds::max();
   const double done_at = pending_.front().done_at;
-  if (settings_.sharing != UsbSharing::kFair) return whole(done_at);
+  if (!settings_.is_fair) return whole(done_at);
   const double remaining_ns =
       (done_at - served_bytes_) * static_cast<double>(pending_.size()) / settings_.bytes_per_ns;
   return served_until_ + from_ns_up(std::max(0.0, remaining_ns));
 }
 
-std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {
-  double reached = as_ns(now);
-  if (settings_.sharing == UsbSharing::kFair && !pending_.empty()) {
+std::optional<std::uint32_t> UsbController::take_completed(Nanoseconds now) {
+  double reached = to_ns(now);
+  if (settings_.is_fair && !pending_.empty()) {
     serve_until(now);
     reached = served_bytes_ + kByteTolerance;
   }
@@ -86,4 +79,4 @@ std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {
   return done.ticket;
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench

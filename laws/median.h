@@ -2,8 +2,8 @@
 //
 //   std::vector<double> values = ...;
 //   double middle = median_in_place(values);
-#ifndef SIMBENCH_ALGORITHMS_MEDIAN_H_
-#define SIMBENCH_ALGORITHMS_MEDIAN_H_
+#ifndef SIMBENCH_LAWS_MEDIAN_H_
+#define SIMBENCH_LAWS_MEDIAN_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -24,4 +24,4 @@ inline double median_in_place(std::span<double> values) {
 
 }  // namespace simbench
 
-#endif  // SIMBENCH_ALGORITHMS_MEDIAN_H_
+#endif  // SIMBENCH_LAWS_MEDIAN_H_

@@ -1,10 +1,10 @@
-#include "sim/engine/quantile_table.h"
+#include "laws/quantile_table.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace simbench::sim {
+namespace simbench {
 namespace {
 
 TEST(QuantileTable, OfAConstantIsConstant) {
@@ -34,4 +34,4 @@ TEST(QuantileTable, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace simbench::sim
+}  // namespace simbench
