@@ -28,10 +28,10 @@ std::string problem_of(const scenarios::Scenario& world, const scenarios::Pipeli
 
 }  // namespace
 
-Ranking ranking_of(const scenarios::Scenario& fitted) {
+FittedRanking ranking_of(const scenarios::Scenario& fitted) {
   const scenarios::Scenario leaderboard = scenarios::load_scenario(kLeaderboard);
   const bool one_host = fitted.cameras.count <= fitted.cameras.cameras_per_host;
-  Ranking ranking{.scenario = fitted};
+  FittedRanking ranking{.scenario = fitted};
   ranking.scenario.evaluation.table = scenarios::TableKind::kLeaderboard;
   ranking.scenario.pipelines.clear();
   for (const scenarios::Pipeline& pipeline : leaderboard.pipelines) {

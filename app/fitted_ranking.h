@@ -5,7 +5,7 @@
 // synchronise. An algorithm that needs what the model lacks (hardware stamps, pulses, polls of the
 // cameras' clocks) is left out and named.
 //
-//   const Ranking ranking = ranking_of(scenario);
+//   const FittedRanking ranking = ranking_of(scenario);
 //   evaluate(ranking.scenario, [&] { return simulated_world(ranking.scenario); }, {}, progress);
 #ifndef SIMBENCH_APP_FITTED_RANKING_H_
 #define SIMBENCH_APP_FITTED_RANKING_H_
@@ -17,12 +17,12 @@
 
 namespace simbench::app {
 
-struct Ranking {
+struct FittedRanking {
   scenarios::Scenario scenario;         // prints a leaderboard
   std::vector<std::string> left_out{};  // "host.pps: needs a pulse per second (...)"
 };
 
-Ranking ranking_of(const scenarios::Scenario& fitted);
+FittedRanking ranking_of(const scenarios::Scenario& fitted);
 
 }  // namespace simbench::app
 

@@ -92,7 +92,7 @@ std::optional<std::chrono::milliseconds> patience() {
 
 evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
                                   const scenarios::Pipeline& pipeline,
-                                  const ProgramOptions& options) {
+                                  const ProgramFolders& options) {
   sim::ProgramSettings settings{.pipeline = pipeline.name,
                                 .programs = *pipeline.programs,
                                 .shim = "",
@@ -121,7 +121,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
 
 std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline,
                                              const std::string& interface,
-                                             const ProgramOptions& options) {
+                                             const ProgramFolders& options) {
   const std::string& logs = options.log_folder;
   hardware::NodeProgramSettings settings{
       .programs = pipeline.programs.value(),
@@ -137,7 +137,7 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
   }
 }
 
-void use_programs(const ProgramOptions& options) {
+void use_programs(const ProgramFolders& options) {
   evaluation::set_program_maker(
       [options](const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
         return entry_of(scenario, pipeline, options);

@@ -21,7 +21,7 @@ namespace simbench::app {
 // stop it in a debugger.
 inline constexpr char kPatienceVariable[] = "SIMBENCH_PATIENCE_S";
 
-struct ProgramOptions {
+struct ProgramFolders {
   // Where the hosts' folders stay, in PIPELINE/seed1/host0, with what the programs printed; empty:
   // nowhere.
   std::string log_folder{};
@@ -35,10 +35,10 @@ struct ProgramOptions {
 // scenarios::InputError for what cannot run here.
 std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline,
                                              const std::string& interface,
-                                             const ProgramOptions& options);
+                                             const ProgramFolders& options);
 
 // Says how pipelines with programs run (evaluation/run/pipeline_choice.h).
-void use_programs(const ProgramOptions& options = {});
+void use_programs(const ProgramFolders& options = {});
 
 }  // namespace simbench::app
 

@@ -15,7 +15,7 @@ namespace {
 
 using StampMember = std::int64_t RawFrame::*;
 
-struct StampSource {
+struct StampField {
   StampMember member;
   std::int64_t unit_ns;
   const char* name;
@@ -50,7 +50,7 @@ constexpr std::array<MetadataName, 12> kMetadataNames = {{
 }};
 
 // A product that cannot overflow; nothing for a stamp that is not there or beyond all time.
-std::optional<std::int64_t> stamp_ns(const RawFrame& frame, const StampSource& source) {
+std::optional<std::int64_t> stamp_ns(const RawFrame& frame, const StampField& source) {
   const std::int64_t value = frame.*source.member;
   if (value == kNoStamp) return std::nullopt;
   const std::int64_t most = std::numeric_limits<std::int64_t>::max() / 4 / source.unit_ns;
@@ -58,7 +58,7 @@ std::optional<std::int64_t> stamp_ns(const RawFrame& frame, const StampSource& s
   return value * source.unit_ns;
 }
 
-bool serves(const std::vector<RawFrame>& frames, const StampSource& source) {
+bool serves(const std::vector<RawFrame>& frames, const StampField& source) {
   std::size_t having = 0;
   bool differs = false;
   std::optional<std::int64_t> first;
@@ -74,18 +74,18 @@ bool serves(const std::vector<RawFrame>& frames, const StampSource& source) {
 }
 
 template <std::size_t size>
-const StampSource* first_that_serves(const std::array<StampSource, size>& sources,
-                                     const std::vector<RawFrame>& frames) {
+const StampField* first_that_serves(const std::array<StampField, size>& sources,
+                                    const std::vector<RawFrame>& frames) {
   const auto found =
       std::find_if(sources.begin(), sources.end(),
-                   [&frames](const StampSource& source) { return serves(frames, source); });
+                   [&frames](const StampField& source) { return serves(frames, source); });
   return found == sources.end() ? nullptr : &*found;
 }
 
 bool is_sdk(const FrameTrack& track) { return track.camera.kind == TopicKind::kSdkImage; }
 
-const StampSource* stamps_of(const FrameTrack& track) {
-  static constexpr std::array<StampSource, 3> kSources = {{
+const StampField* stamps_of(const FrameTrack& track) {
+  static constexpr std::array<StampField, 3> kSources = {{
       {&RawFrame::sensor_us, kMicrosecondNs, "SENSOR_TIMESTAMP (camera's clock, us)"},
       {&RawFrame::frame_us, kMicrosecondNs, "FRAME_TIMESTAMP (camera's clock, us)"},
       {&RawFrame::header_ns, 1, "header stamp"},
@@ -93,20 +93,20 @@ const StampSource* stamps_of(const FrameTrack& track) {
   return first_that_serves(kSources, track.frames);
 }
 
-const StampSource* arrivals_of(const FrameTrack& track) {
-  static constexpr std::array<StampSource, 3> kSources = {{
+const StampField* arrivals_of(const FrameTrack& track) {
+  static constexpr std::array<StampField, 3> kSources = {{
       {&RawFrame::arrival_ms, kMillisecondNs, "TIME_OF_ARRIVAL (host's clock, ms)"},
       {&RawFrame::backend_ms, kMillisecondNs, "BACKEND_TIMESTAMP (host's clock, ms)"},
       {&RawFrame::log_ns, 1, "log time (recorder's clock)"},
   }};
-  static constexpr StampSource kLog = kSources.back();
+  static constexpr StampField kLog = kSources.back();
   if (!is_sdk(track)) return &kLog;
-  const StampSource* source = first_that_serves(kSources, track.frames);
+  const StampField* source = first_that_serves(kSources, track.frames);
   return source != nullptr ? source : &kLog;
 }
 
 // A header's stamp is a computer's, unless the bag says otherwise or it cannot count from 1970.
-bool is_of_host(const FrameTrack& track, const StampSource& source, std::int64_t first_ns) {
+bool is_of_host(const FrameTrack& track, const StampField& source, std::int64_t first_ns) {
   if (source.member != &RawFrame::header_ns) return false;
   if (!track.domain.empty()) {
     return track.domain != "Hardware Clock" && track.domain != "hardware_clock";
@@ -123,7 +123,7 @@ bool are_counted(const std::vector<RawFrame>& frames) {
          });
 }
 
-std::string stamp_text(const StampSource& source, bool of_host) {
+std::string stamp_text(const StampField& source, bool of_host) {
   if (source.member != &RawFrame::header_ns) return source.name;
   return fmt::format("header stamp ({})", of_host ? "a computer's clock" : "camera's clock");
 }
@@ -146,13 +146,13 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
 bool make_stream(const FrameTrack& track, const std::string& place, CameraStream& stream,
                  std::vector<std::string>& notes) {
   const std::string topic = printable_name(track.topic_name);
-  const StampSource* stamps = stamps_of(track);
+  const StampField* stamps = stamps_of(track);
   if (stamps == nullptr) {
     notes.push_back(fmt::format("{}: {}: left out: its {} have no stamps, or all the same", place,
                                 topic, counted(track.frames.size(), "message")));
     return false;
   }
-  const StampSource* arrivals = arrivals_of(track);
+  const StampField* arrivals = arrivals_of(track);
   stream.counted = are_counted(track.frames);
   stream.frames.reserve(track.frames.size());
   stream.origin.messages.reserve(track.frames.size());

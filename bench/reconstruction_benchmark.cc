@@ -53,7 +53,7 @@ void poisson(benchmark::State& state) {
   Rig rig;
   const QuietErrors quiet;
   const evaluation::ExposureSet set = rig.set(state);
-  const Studio studio(rig.scenario, kSeed);
+  const StudioRig studio(rig.scenario, kSeed);
   OrientedPoints points;
   for (std::size_t camera = 0; camera < set.cameras.size(); ++camera) {
     constexpr double kMetresPerMm = 1e-3;

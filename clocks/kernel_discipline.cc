@@ -81,7 +81,7 @@ bool KernelDiscipline::changes_clock(const timex& request) const {
          rate_ppb_of(frequency, tick) != base_rate_ppb();
 }
 
-void KernelDiscipline::apply(const timex& request, SteeredClock& clock) {
+void KernelDiscipline::apply(const timex& request, AdjustedClock& clock) {
   move_on(clock);
   if (is_single_shot(request)) {
     if (!is_read_of_single_shot(request)) adjtime_left_us_ = request.offset;
@@ -138,7 +138,7 @@ void KernelDiscipline::update_offset(long offset) {
   status_ = (status_ & ~STA_MODE) | (mode == KernelLoop::Mode::kFll ? STA_MODE : 0);
 }
 
-void KernelDiscipline::forget(SteeredClock& clock) {
+void KernelDiscipline::forget(AdjustedClock& clock) {
   loop_.clear();
   adjtime_left_us_ = 0;
   second_rate_ppb_ = 0;
@@ -151,7 +151,7 @@ void KernelDiscipline::forget(SteeredClock& clock) {
 
 double KernelDiscipline::base_rate_ppb() const { return rate_ppb_of(loop_.frequency(), tick_); }
 
-void KernelDiscipline::give_rate(SteeredClock& clock) {
+void KernelDiscipline::give_rate(AdjustedClock& clock) {
   const double rate_ppb = base_rate_ppb() + second_rate_ppb_;
   if (rate_ppb == given_rate_ppb_) return;
   given_rate_ppb_ = rate_ppb;
@@ -165,7 +165,7 @@ bool KernelDiscipline::is_moving() const {
          leap_state_ != TIME_OK || (status_ & (STA_INS | STA_DEL)) != 0;
 }
 
-void KernelDiscipline::move_on(SteeredClock& clock) {
+void KernelDiscipline::move_on(AdjustedClock& clock) {
   const std::int64_t now_s = floor_div(clock.epoch_ns(), kSecondNs);
   const std::int64_t passed_s = now_s - second_;
   second_ = now_s;
@@ -175,7 +175,7 @@ void KernelDiscipline::move_on(SteeredClock& clock) {
   if (is_moving()) begin_second(clock);
 }
 
-void KernelDiscipline::begin_second(SteeredClock& clock) {
+void KernelDiscipline::begin_second(AdjustedClock& clock) {
   if (const int seconds = leap(); seconds != 0) {
     clock.leap(std::chrono::seconds(seconds));
     second_ += seconds;

@@ -28,7 +28,7 @@
 //
 // Source: adjtimex(2); Linux, kernel/time/ntp.c and timekeeping.c.
 //
-//   void speed_up(SteeredClock& steered) {
+//   void speed_up(AdjustedClock& steered) {
 //     KernelDiscipline kernel(steered.epoch_ns());
 //     timex request{};
 //     request.modes = ADJ_FREQUENCY;
@@ -52,9 +52,9 @@ namespace simbench::clocks {
 inline constexpr std::int64_t kLatestSetting = INT64_MAX - 30 * 365 * 86'400 * kSecondNs;
 
 // The clock that is steered, at the present instant.
-class SteeredClock {
+class AdjustedClock {
  public:
-  virtual ~SteeredClock() = default;
+  virtual ~AdjustedClock() = default;
   // What it reads, since 1970.
   virtual std::int64_t epoch_ns() const = 0;
   virtual void leap(Nanoseconds offset) = 0;
@@ -70,9 +70,9 @@ class KernelDiscipline {
   static int refusal(const timex& request);
   // Whether a request that is not refused changes the clock, rather than what is kept about it.
   bool changes_clock(const timex& request) const;
-  void apply(const timex& request, SteeredClock& clock);
+  void apply(const timex& request, AdjustedClock& clock);
   // The clock has been set.
-  void forget(SteeredClock& clock);
+  void forget(AdjustedClock& clock);
   // Fills in what adjtimex() returns for a request that came when adjtime() had so much left;
   // returns the clock's state.
   int read(std::int64_t reading_ns, const timex& request, long adjtime_before_us, timex& now) const;
@@ -83,7 +83,7 @@ class KernelDiscipline {
   // When that begins, as the clock reads.
   std::int64_t next_second_ns() const { return (second_ + 1) * kSecondNs; }
   // Up to the present second.
-  void move_on(SteeredClock& clock);
+  void move_on(AdjustedClock& clock);
 
  private:
   void keep(const timex& request);
@@ -91,8 +91,8 @@ class KernelDiscipline {
   void update_offset(long offset);
   // What stays, without what the present second adds.
   double base_rate_ppb() const;
-  void give_rate(SteeredClock& clock);
-  void begin_second(SteeredClock& clock);
+  void give_rate(AdjustedClock& clock);
+  void begin_second(AdjustedClock& clock);
   void grow_error(std::int64_t seconds);
   // The seconds by which the clock leaps as a second begins.
   int leap();

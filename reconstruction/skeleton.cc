@@ -8,7 +8,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-std::size_t index(Segment segment) { return static_cast<std::size_t>(segment); }
+std::size_t index(BodySegment segment) { return static_cast<std::size_t>(segment); }
 
 // Turns a hanging limb forwards by `angle`.
 Isometry3d forwards(double angle) {
@@ -31,20 +31,20 @@ double toes_down(double lean) {
 
 struct Side {
   double sign;  // of y
-  Segment upper_arm, forearm, thigh, shank, foot;
+  BodySegment upper_arm, forearm, thigh, shank, foot;
 };
 constexpr Side kLeft{1,
-                     Segment::kUpperArmLeft,
-                     Segment::kForearmLeft,
-                     Segment::kThighLeft,
-                     Segment::kShankLeft,
-                     Segment::kFootLeft};
+                     BodySegment::kUpperArmLeft,
+                     BodySegment::kForearmLeft,
+                     BodySegment::kThighLeft,
+                     BodySegment::kShankLeft,
+                     BodySegment::kFootLeft};
 constexpr Side kRight{-1,
-                      Segment::kUpperArmRight,
-                      Segment::kForearmRight,
-                      Segment::kThighRight,
-                      Segment::kShankRight,
-                      Segment::kFootRight};
+                      BodySegment::kUpperArmRight,
+                      BodySegment::kForearmRight,
+                      BodySegment::kThighRight,
+                      BodySegment::kShankRight,
+                      BodySegment::kFootRight};
 
 void place_arm(SegmentPoses& poses, const Side& side, const Posture& posture, double height_m) {
   const double raised = kRestingArm + (1 - kRestingArm / std::numbers::pi) * posture.arms_raised;
@@ -74,7 +74,7 @@ void place_leg(SegmentPoses& poses, const Side& side, const Posture& posture, do
 
 SegmentPoses segment_poses(const Posture& posture, double height_m) {
   SegmentPoses poses;
-  poses[index(Segment::kTrunk)] = Isometry3d::Identity();
+  poses[index(BodySegment::kTrunk)] = Isometry3d::Identity();
   for (const Side& side : {kLeft, kRight}) {
     place_arm(poses, side, posture, height_m);
     place_leg(poses, side, posture, height_m);

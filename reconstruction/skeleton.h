@@ -31,7 +31,7 @@ inline constexpr double kUpperArm = 0.186;
 inline constexpr double kForearm = 0.146;
 inline constexpr double kRestingArm = 0.12;  // rad
 
-enum class Segment {
+enum class BodySegment {
   kTrunk,  // with neck and head
   kUpperArmLeft,
   kForearmLeft,  // with the hand

@@ -59,7 +59,7 @@ Isometry3d calibration_error(const scenarios::Studio& studio, std::uint64_t seed
 
 }  // namespace
 
-Studio::Studio(const scenarios::Scenario& scenario, std::uint64_t seed) {
+StudioRig::StudioRig(const scenarios::Scenario& scenario, std::uint64_t seed) {
   if (!scenario.studio) {
     fail_at(scenario, "/studio",
             "found none, allowed: an object that states where the depth cameras stand and what "

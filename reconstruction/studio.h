@@ -17,8 +17,8 @@
 //
 // Source: section 4 of the paper (6 angles, 3 heights), docs/reference/calibration.md section 6.
 //
-//   const Studio studio(scenario, seed);          // throws scenarios::InputError without a studio
-//   studio.cameras()[3].world_from_camera;
+//   const StudioRig studio(scenario, seed);          // throws scenarios::InputError without a
+//   studio studio.cameras()[3].world_from_camera;
 #ifndef SIMBENCH_RECONSTRUCTION_STUDIO_H_
 #define SIMBENCH_RECONSTRUCTION_STUDIO_H_
 
@@ -37,9 +37,9 @@ struct StudioCamera {
   Eigen::Isometry3d believed;           // as calibrated
 };
 
-class Studio {
+class StudioRig {
  public:
-  Studio(const scenarios::Scenario& scenario, std::uint64_t seed);
+  StudioRig(const scenarios::Scenario& scenario, std::uint64_t seed);
   const std::vector<StudioCamera>& cameras() const { return cameras_; }
 
  private:

@@ -22,20 +22,20 @@ constexpr double kTessellation = 0.001 / 1.75;  // largest error, as a share of 
 
 // A part in the frame of its segment, its lengths as shares of the height.
 struct BodyPart {
-  Segment segment;
+  BodySegment segment;
   Isometry3d pose;
   TriangleMesh mesh;
 };
 using Body = std::vector<BodyPart>;
 
-void add_ellipsoid(Body& body, Segment segment, const Vector3d& centre, const Vector3d& axes) {
+void add_ellipsoid(Body& body, BodySegment segment, const Vector3d& centre, const Vector3d& axes) {
   body.push_back(
       {segment, Isometry3d(Eigen::Translation3d(centre)), make_ellipsoid(axes, kTessellation)});
 }
 
 // From a ball about `from` to a ball about `to`.
-void add_limb(Body& body, Segment segment, const Vector3d& from, double radius, const Vector3d& to,
-              double end_radius) {
+void add_limb(Body& body, BodySegment segment, const Vector3d& from, double radius,
+              const Vector3d& to, double end_radius) {
   const Isometry3d pose = Eigen::Translation3d(from) *
                           Eigen::Quaterniond::FromTwoVectors(-Vector3d::UnitZ(), to - from);
   body.push_back(
@@ -43,7 +43,7 @@ void add_limb(Body& body, Segment segment, const Vector3d& from, double radius, 
 }
 
 void add_trunk(Body& body) {
-  const Segment trunk = Segment::kTrunk;
+  const BodySegment trunk = BodySegment::kTrunk;
   add_ellipsoid(body, trunk, {-0.004, 0, 0.550}, {0.067, 0.099, 0.085});  // pelvis
   add_ellipsoid(body, trunk, {0.003, 0, 0.635}, {0.062, 0.092, 0.130});   // belly
   add_ellipsoid(body, trunk, {0.002, 0, 0.735}, {0.067, 0.101, 0.120});   // chest
@@ -57,13 +57,13 @@ void add_trunk(Body& body) {
   add_ellipsoid(body, trunk, {0.062, 0, 0.922}, {0.012, 0.008, 0.014});  // nose
 }
 
-void add_arm(Body& body, Segment upper_arm, Segment forearm) {
+void add_arm(Body& body, BodySegment upper_arm, BodySegment forearm) {
   add_limb(body, upper_arm, {0, 0, 0}, 0.033, {0, 0, -kUpperArm}, 0.024);
   add_limb(body, forearm, {0, 0, 0}, 0.025, {0, 0, -kForearm}, 0.016);
   add_ellipsoid(body, forearm, {0.003, 0, -kForearm - 0.042}, {0.023, 0.014, 0.058});  // hand
 }
 
-void add_leg(Body& body, Segment thigh, Segment shank, Segment foot) {
+void add_leg(Body& body, BodySegment thigh, BodySegment shank, BodySegment foot) {
   add_limb(body, thigh, {0, 0, 0}, 0.052, {0, 0, kKneeHeight - kHipHeight}, 0.033);
   add_limb(body, shank, {0, 0, 0}, 0.033, {0, 0, kAnkleHeight - kKneeHeight}, 0.021);
   add_ellipsoid(body, shank, {-0.008, 0, -0.075}, {0.031, 0.030, 0.080});  // calf
@@ -75,10 +75,10 @@ void add_leg(Body& body, Segment thigh, Segment shank, Segment foot) {
 Body make_body() {
   Body body;
   add_trunk(body);
-  add_arm(body, Segment::kUpperArmLeft, Segment::kForearmLeft);
-  add_arm(body, Segment::kUpperArmRight, Segment::kForearmRight);
-  add_leg(body, Segment::kThighLeft, Segment::kShankLeft, Segment::kFootLeft);
-  add_leg(body, Segment::kThighRight, Segment::kShankRight, Segment::kFootRight);
+  add_arm(body, BodySegment::kUpperArmLeft, BodySegment::kForearmLeft);
+  add_arm(body, BodySegment::kUpperArmRight, BodySegment::kForearmRight);
+  add_leg(body, BodySegment::kThighLeft, BodySegment::kShankLeft, BodySegment::kFootLeft);
+  add_leg(body, BodySegment::kThighRight, BodySegment::kShankRight, BodySegment::kFootRight);
   return body;
 }
 
@@ -109,7 +109,7 @@ class Person final : public Subject {
 
  private:
   struct Joint {
-    Segment segment;
+    BodySegment segment;
     Isometry3d pose;  // of the part in its segment's frame
   };
   Motion motion_;

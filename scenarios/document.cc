@@ -88,7 +88,7 @@ class Builder : public json::json_sax_t {
  public:
   Builder(std::string_view text, const char** furthest) : text_(text), furthest_(furthest) {}
 
-  Document take() { return std::move(document_); }
+  JsonDocument take() { return std::move(document_); }
 
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
@@ -208,7 +208,7 @@ class Builder : public json::json_sax_t {
   const char* at_ = text_.data();
   const char* line_start_ = text_.data();
   std::size_t line_ = 1;
-  Document document_;
+  JsonDocument document_;
   std::vector<Open> open_;
   std::string pointer_;  // of the innermost open container
   std::string key_;
@@ -227,7 +227,7 @@ std::string printable(std::string text) {
 
 }  // namespace
 
-Document parse_document(std::string_view text) {
+JsonDocument parse_document(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
@@ -342,7 +342,7 @@ std::string read_input_file(const std::string& path, const std::string& prefix,
 PlacedDocument parse_placed(std::string_view text, const Place& file) {
   PlacedDocument placed;
   try {
-    Document parsed = parse_document(text);
+    JsonDocument parsed = parse_document(text);
     placed.root = std::move(parsed.root);
     for (const auto& [pointer, line] : parsed.lines) {
       Place place = file;

@@ -20,7 +20,7 @@ namespace simbench::scenarios {
 
 inline constexpr std::size_t kMaximumNesting = 64;
 
-struct Document {
+struct JsonDocument {
   nlohmann::json root;
   std::map<std::string, std::size_t> lines;  // by JSON pointer: of the key, of the array element
 };
@@ -41,7 +41,7 @@ class DocumentError : public std::runtime_error {
 };
 
 // Throws DocumentError. Linear in the size of the text.
-Document parse_document(std::string_view text);
+JsonDocument parse_document(std::string_view text);
 
 // "/parent" and "a/b" -> "/parent/a~1b" (RFC 6901).
 std::string child_pointer(const std::string& parent, std::string_view key);

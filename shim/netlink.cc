@@ -16,7 +16,7 @@ namespace simbench::shim {
 namespace {
 
 // Messages that wait for their reader; each is one datagram.
-class Answer {
+class NetlinkAnswer {
  public:
   bool is_empty() const { return size_ == 0; }
   const unsigned char* bytes() const { return bytes_; }
@@ -55,31 +55,31 @@ class Answer {
 };
 
 // Programs have one or two of these sockets.
-struct Place {
+struct NetlinkSocket {
   bool is_taken;
   int number;
-  Answer answer;
+  NetlinkAnswer answer;
 };
 constexpr int kMostSockets = 8;
-Place places[kMostSockets];
+NetlinkSocket places[kMostSockets];
 
-Answer* answer_of(int fd) {
-  for (Place& each : places) {
+NetlinkAnswer* answer_of(int fd) {
+  for (NetlinkSocket& each : places) {
     if (each.is_taken && each.number == number_of(fd)) return &each.answer;
   }
   return nullptr;
 }
 
 // A place whose socket was closed is free.
-Place* take_place() {
-  for (Place& each : places) {
+NetlinkSocket* take_place() {
+  for (NetlinkSocket& each : places) {
     if (!each.is_taken || !is_open(each.number)) return &each;
   }
   return nullptr;
 }
 
 void state_link(const InterfaceFacts& facts, const nlmsghdr& question, std::uint16_t flags,
-                Answer& answer) {
+                NetlinkAnswer& answer) {
   constexpr unsigned char kUp = 6;  // IF_OPER_UP
   answer.begin(RTM_NEWLINK, flags, question);
   ifinfomsg link{};
@@ -94,14 +94,14 @@ void state_link(const InterfaceFacts& facts, const nlmsghdr& question, std::uint
   answer.end();
 }
 
-void state_error(int error, const nlmsghdr& question, Answer& answer) {
+void state_error(int error, const nlmsghdr& question, NetlinkAnswer& answer) {
   answer.begin(NLMSG_ERROR, 0, question);
   const nlmsgerr cause{.error = -error, .msg = question};
   answer.add(&cause, sizeof cause);
   answer.end();
 }
 
-void state_end(const nlmsghdr& question, Answer& answer) {
+void state_end(const nlmsghdr& question, NetlinkAnswer& answer) {
   const int nothing = 0;
   answer.begin(NLMSG_DONE, NLM_F_MULTI, question);
   answer.add(&nothing, sizeof nothing);
@@ -109,7 +109,7 @@ void state_end(const nlmsghdr& question, Answer& answer) {
 }
 
 void state_links(const nlmsghdr& question, const ifinfomsg& which, const char* name,
-                 Answer& answer) {
+                 NetlinkAnswer& answer) {
   if ((question.nlmsg_flags & NLM_F_DUMP) == NLM_F_DUMP) {
     for (int i = 0; i < kInterfaces; ++i) {
       state_link(interface_at(i), question, NLM_F_MULTI, answer);
@@ -139,7 +139,7 @@ const char* name_in(const unsigned char* bytes, std::size_t size) {
   return nullptr;
 }
 
-void reply(const unsigned char* bytes, std::size_t size, Answer& answer) {
+void reply(const unsigned char* bytes, std::size_t size, NetlinkAnswer& answer) {
   nlmsghdr question{};
   if (size < sizeof question) return;
   memcpy(&question, bytes, sizeof question);
@@ -155,7 +155,7 @@ void reply(const unsigned char* bytes, std::size_t size, Answer& answer) {
 }  // namespace
 
 int open_netlink(int type, int protocol) {
-  Place* place = take_place();
+  NetlinkSocket* place = take_place();
   if (protocol != NETLINK_ROUTE || place == nullptr) {
     errno = EPROTONOSUPPORT;
     return -1;
@@ -163,7 +163,7 @@ int open_netlink(int type, int protocol) {
   const int fd =
       open_descriptor(Kind::kNetlink, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
-  for (Place& each : places) each.is_taken &= each.number != number_of(fd);
+  for (NetlinkSocket& each : places) each.is_taken &= each.number != number_of(fd);
   place->is_taken = true;
   place->number = number_of(fd);
   place->answer.clear();
@@ -182,7 +182,7 @@ ssize_t netlink_send(int fd, const msghdr& message) {
     memcpy(bytes + size, piece.iov_base, piece.iov_len);
     size += piece.iov_len;
   }
-  Answer& answer = *answer_of(fd);
+  NetlinkAnswer& answer = *answer_of(fd);
   const bool was_empty = answer.is_empty();
   reply(bytes, size, answer);
   const std::uint64_t one = 1;
@@ -191,7 +191,7 @@ ssize_t netlink_send(int fd, const msghdr& message) {
 }
 
 ssize_t netlink_receive(int fd, msghdr& message, int flags) {
-  Answer& answer = *answer_of(fd);
+  NetlinkAnswer& answer = *answer_of(fd);
   if (answer.is_empty()) {
     // Nothing will ever come.
     pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};

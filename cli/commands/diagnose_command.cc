@@ -35,7 +35,7 @@ Examples:
 
 Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
-struct DiagnoseOptions {
+struct DiagnoseArguments {
   std::vector<std::string> files;
   InputOptions inputs;
   std::string format;
@@ -45,7 +45,7 @@ struct DiagnoseOptions {
   std::vector<std::string> command;
 };
 
-int run_diagnose(const DiagnoseOptions& options) {
+int run_diagnose(const DiagnoseArguments& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
   const auto rig = read_inputs(options.files, options.inputs);
@@ -66,7 +66,7 @@ int run_diagnose(const DiagnoseOptions& options) {
 }  // namespace
 
 void add_diagnose_command(CommandLine& line) {
-  auto options = std::make_shared<DiagnoseOptions>();
+  auto options = std::make_shared<DiagnoseArguments>();
   options->command = line.arguments;
   Command command(line, "diagnose", "Find out whether the hardware sync of a recorded rig works");
   command.texts("inputs", "INPUT...", options->files, kInputsText).required();

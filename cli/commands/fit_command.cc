@@ -155,7 +155,7 @@ std::optional<FitTask> task_of(const FitOptions& options) {
 // The model under every pipeline; nothing after Ctrl-C.
 std::optional<std::string> ranking_text(const scenarios::Scenario& model,
                                         const FitOptions& options) {
-  const app::Ranking ranking = app::ranking_of(model);
+  const app::FittedRanking ranking = app::ranking_of(model);
   for (const std::string& text : ranking.left_out) print_note("not ranked: " + text);
   const auto results = watched<evaluation::Results>(
       [&](const evaluation::Progress& progress) {

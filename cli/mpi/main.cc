@@ -176,14 +176,14 @@ class MpiFarm final : public evaluation::TaskFarm {
   Outbox outbox_;
 };
 
-struct Answer {
+struct TaskAnswer {
   Tag tag = kAnswer;
   Message message;
 };
 
 // Passes tasks and answers between a rank's main thread and its workers. An empty task ends a
 // worker.
-class Exchange {
+class TaskExchange {
  public:
   void add(std::optional<Message> task) {
     const std::lock_guard lock(mutex_);
@@ -199,12 +199,12 @@ class Exchange {
     return task;
   }
 
-  void answer(Answer answer) {
+  void answer(TaskAnswer answer) {
     const std::lock_guard lock(mutex_);
     answers_.push_back(std::move(answer));
   }
 
-  std::deque<Answer> take_answers() {
+  std::deque<TaskAnswer> take_answers() {
     const std::lock_guard lock(mutex_);
     return std::exchange(answers_, {});
   }
@@ -213,10 +213,10 @@ class Exchange {
   std::mutex mutex_;
   std::condition_variable added_;
   std::deque<std::optional<Message>> tasks_;
-  std::deque<Answer> answers_;
+  std::deque<TaskAnswer> answers_;
 };
 
-void work(const std::string& setup, Exchange& exchange) {
+void work(const std::string& setup, TaskExchange& exchange) {
   evaluation::TaskWorker worker;
   while (const std::optional<Message> task = exchange.next()) {
     try {
@@ -232,12 +232,12 @@ void work(const std::string& setup, Exchange& exchange) {
 
 // The side of every other rank; returns when it is dismissed.
 void serve(const mpi::communicator& world) {
-  Exchange exchange;
+  TaskExchange exchange;
   Outbox outbox(world);
   std::vector<std::jthread> workers;
   Pause pause;
   while (true) {
-    for (const Answer& answer : exchange.take_answers()) {
+    for (const TaskAnswer& answer : exchange.take_answers()) {
       outbox.send(0, answer.tag, answer.message);
       pause.end();
     }

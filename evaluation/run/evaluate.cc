@@ -37,11 +37,11 @@ double drawn_asymmetry_ms(const scenarios::Network& network) {
 }
 
 // The jobs of one evaluation and their results.
-class Evaluation {
+class EvaluationRun {
  public:
-  Evaluation(const Scenario& scenario, std::vector<PipelineChoice> choices,
-             const SourceFactory& make_source, const EvaluationOptions& options,
-             const Progress& progress)
+  EvaluationRun(const Scenario& scenario, std::vector<PipelineChoice> choices,
+                const SourceFactory& make_source, const EvaluationOptions& options,
+                const Progress& progress)
       : scenario_(scenario),
         make_source_(make_source),
         options_(options),
@@ -78,7 +78,7 @@ class Evaluation {
  private:
   // One thread's backend; its CPU time ends when that is gone.
   struct Worker {
-    explicit Worker(Evaluation& all) : timer(all.cpu_time_), source(all.make_source_()) {}
+    explicit Worker(EvaluationRun& all) : timer(all.cpu_time_), source(all.make_source_()) {}
 
     CpuTimer timer;
     std::unique_ptr<RecordingSource> source;
@@ -201,7 +201,7 @@ Results evaluate(const Scenario& scenario, const SourceFactory& make_source,
 Results evaluate_choices(const Scenario& scenario, std::vector<PipelineChoice> choices,
                          const SourceFactory& make_source, const EvaluationOptions& options,
                          const Progress& progress) {
-  return Evaluation(scenario, std::move(choices), make_source, options, progress).run();
+  return EvaluationRun(scenario, std::move(choices), make_source, options, progress).run();
 }
 
 void check_pipelines(const Scenario& scenario) { choose_pipelines(scenario, {}); }

@@ -53,7 +53,7 @@ struct CameraInfo {
 };
 
 // What a program may change about the frames of a camera, where the camera lets it.
-struct SteeringSettings {
+struct FrameSteering {
   FrameControlLimits limits{};
   std::int64_t insert_stretches = 1;  // frames that get the length of an inserted one
 };
@@ -65,7 +65,7 @@ struct CameraSettings {
   double exposure_ms = 0;
   bool auto_exposure = false;
   double trigger_rate_hz = 0;
-  std::optional<SteeringSettings> steering{};  // nothing: its frames stay as they are
+  std::optional<FrameSteering> steering{};  // nothing: its frames stay as they are
 };
 
 struct CameraFrame {

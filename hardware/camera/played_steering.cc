@@ -10,7 +10,7 @@ constexpr std::uint32_t kMostMissing = 1000;
 
 }  // namespace
 
-PlayedSteering::PlayedSteering(const SteeringSettings& settings)
+PlayedSteering::PlayedSteering(const FrameSteering& settings)
     : requests_(settings.limits),
       lengths_(settings.limits, settings.insert_stretches),
       usual_(settings.limits.nearest(settings.limits.frame_length)) {}

@@ -33,7 +33,7 @@ namespace simbench::hardware {
 
 class PlayedSteering {
  public:
-  explicit PlayedSteering(const SteeringSettings& settings);
+  explicit PlayedSteering(const FrameSteering& settings);
 
   // Frames are named by their counters, of 32 bits: by how much the next frame is later than it was
   // recorded, if it has this one.

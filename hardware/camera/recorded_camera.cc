@@ -44,7 +44,7 @@ struct RecordedPlay {
   FrameHandler on_frame;
   CameraEventHandler on_event;
   StreamWatch watch{CameraSettings{}, true};
-  std::optional<SteeringSettings> steered{};  // nothing: its frames stay as they are
+  std::optional<FrameSteering> steered{};  // nothing: its frames stay as they are
 
   State state = State::kWaiting;
   MonotonicTime started{};

@@ -47,7 +47,7 @@ class SoftwareClock : public NodeClock {
   };
 
   // The clock at the instant of a change, as a kernel steers it.
-  class Steered final : public clocks::SteeredClock {
+  class Steered final : public clocks::AdjustedClock {
    public:
     std::int64_t epoch_ns() const override;
     void leap(Nanoseconds offset) override;

@@ -34,7 +34,7 @@ NodeError::Kind node_error_kind(const StreamError& error) {
 struct Pending {
   explicit Pending(asio::io_context& context) : news(context.get_executor()) {}
   Notice news;
-  std::optional<Answer> reply;
+  std::optional<NodeAnswer> reply;
   bool broken = false;
 };
 
@@ -53,7 +53,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     const auto self = shared_from_this();
     const MonotonicTime deadline = monotonic_now() + limit;
     const std::shared_ptr<SecureStream> stream = co_await open_stream(deadline);
-    const Request request = {next_id_++, std::move(verb), std::move(arguments)};
+    const NodeRequest request = {next_id_++, std::move(verb), std::move(arguments)};
     const auto pending = std::make_shared<Pending>(context_);
     pending_[request.id] = pending;
     std::optional<StreamError> failure;
@@ -131,7 +131,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     if (state->stream_ == stream) state->broken();
   }
 
-  void take(Answer answer) {
+  void take(NodeAnswer answer) {
     if (!answer.notice.empty()) {
       if (!closed_) on_notice_(answer);
       return;

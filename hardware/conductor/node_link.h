@@ -11,7 +11,7 @@
 // Errors: NodeError, one line that begins with the host's name and address. kRefused is the node's
 // own answer; every other kind means that the request did not reach it or got no answer.
 //
-//   NodeLink link(context, rig.hosts[3], key, [](const Answer& notice) { ... });
+//   NodeLink link(context, rig.hosts[3], key, [](const NodeAnswer& notice) { ... });
 //   nlohmann::json hello = co_await link.ask("hello", {}, std::chrono::seconds(3));
 #ifndef SIMBENCH_HARDWARE_CONDUCTOR_NODE_LINK_H_
 #define SIMBENCH_HARDWARE_CONDUCTOR_NODE_LINK_H_
@@ -47,7 +47,7 @@ class NodeError : public std::runtime_error {
 
 class NodeLink {
  public:
-  using NoticeHandler = std::function<void(const Answer& notice)>;
+  using NoticeHandler = std::function<void(const NodeAnswer& notice)>;
 
   NodeLink(boost::asio::io_context& context, const RigHost& host, SecretKey key,
            NoticeHandler on_notice);

@@ -116,7 +116,7 @@ RigSession::RigSession(boost::asio::io_context& context, const Rig& rig, const S
   hosts_.reserve(rig.hosts.size());
   for (std::size_t host = 0; host < rig.hosts.size(); ++host) {
     hosts_.push_back({NodeLink(context, rig.hosts[host], key,
-                               [this, host](const Answer& notice) { on_notice(host, notice); }),
+                               [this, host](const NodeAnswer& notice) { on_notice(host, notice); }),
                       {.name = rig.hosts[host].name, .lost = false, .oscillator = {}},
                       {}});
   }
@@ -428,7 +428,7 @@ Task<void> RigSession::wait(Nanoseconds limit, std::function<bool()> is_over) {
   }
 }
 
-void RigSession::on_notice(std::size_t host, const Answer& notice) {
+void RigSession::on_notice(std::size_t host, const NodeAnswer& notice) {
   if (notice.notice == "synchronised") {
     const auto error = notice.details.find("error");
     const bool failed = error != notice.details.end() && error->is_string();

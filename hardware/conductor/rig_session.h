@@ -88,7 +88,7 @@ class RigSession {
   // Waits until `is_over`, at most `limit`. Throws if the user has cancelled.
   Task<void> wait(Nanoseconds limit, std::function<bool()> is_over);
 
-  void on_notice(std::size_t host, const Answer& notice);
+  void on_notice(std::size_t host, const NodeAnswer& notice);
   void give_up(std::size_t host, const std::string& why);
   void note(std::string line) {
     progress(line);

@@ -34,7 +34,7 @@ Task<std::string> ConductorConnection::serve() {
         throw ProtocolError(fmt::format("a request of {} bytes, allowed: {}", message.bytes.size(),
                                         kMaxRequestBytes));
       }
-      Request request = parse_request(message.bytes);
+      NodeRequest request = parse_request(message.bytes);
       co_await throttle();
       co_await take(std::move(request));
     } catch (const std::exception& error) {
@@ -45,7 +45,7 @@ Task<std::string> ConductorConnection::serve() {
   co_return why;
 }
 
-Task<void> ConductorConnection::take(Request request) {
+Task<void> ConductorConnection::take(NodeRequest request) {
   if (is_quick(request.verb)) {
     co_await answer(std::move(request));
     co_return;
@@ -60,7 +60,7 @@ Task<void> ConductorConnection::take(Request request) {
 
 Task<void> ConductorConnection::answer_waiting(Self self) {
   while (!self->waiting_.empty()) {
-    Request request = std::move(self->waiting_.front());
+    NodeRequest request = std::move(self->waiting_.front());
     self->waiting_.pop_front();
     co_await self->answer(std::move(request));
   }
@@ -73,8 +73,8 @@ Task<void> ConductorConnection::throttle() {
   }
 }
 
-Task<void> ConductorConnection::answer(Request request) {
-  Answer reply;
+Task<void> ConductorConnection::answer(NodeRequest request) {
+  NodeAnswer reply;
   reply.id = request.id;
   try {
     reply.details = co_await handler_(shared_from_this(), std::move(request));
@@ -85,7 +85,7 @@ Task<void> ConductorConnection::answer(Request request) {
   co_await send(shared_from_this(), std::move(reply));
 }
 
-Task<void> ConductorConnection::send(Self self, Answer answer) {
+Task<void> ConductorConnection::send(Self self, NodeAnswer answer) {
   try {
     co_await self->stream_->send(encode(answer));
   } catch (const StreamError&) {
@@ -94,7 +94,7 @@ Task<void> ConductorConnection::send(Self self, Answer answer) {
 }
 
 void ConductorConnection::notify(const std::string& notice, const nlohmann::json& details) {
-  Answer answer;
+  NodeAnswer answer;
   answer.notice = notice;
   answer.details = details;
   asio::co_spawn(context_, send(shared_from_this(), std::move(answer)), asio::detached);

@@ -36,7 +36,7 @@ inline constexpr Nanoseconds kIdleConnection = std::chrono::minutes(1);
 class ConductorConnection : public std::enable_shared_from_this<ConductorConnection> {
  public:
   using Handler =
-      std::function<Task<nlohmann::json>(std::shared_ptr<ConductorConnection>, Request)>;
+      std::function<Task<nlohmann::json>(std::shared_ptr<ConductorConnection>, NodeRequest)>;
 
   ConductorConnection(boost::asio::io_context& context, std::unique_ptr<SecureStream> stream,
                       Handler handler);
@@ -51,19 +51,19 @@ class ConductorConnection : public std::enable_shared_from_this<ConductorConnect
   void join(const std::string& session) { session_ = session; }
 
  private:
-  Task<void> take(Request request);
+  Task<void> take(NodeRequest request);
   Task<void> throttle();
-  Task<void> answer(Request request);
+  Task<void> answer(NodeRequest request);
 
   using Self = std::shared_ptr<ConductorConnection>;
   static Task<void> answer_waiting(Self self);
-  static Task<void> send(Self self, Answer answer);
+  static Task<void> send(Self self, NodeAnswer answer);
 
   boost::asio::io_context& context_;
   std::unique_ptr<SecureStream> stream_;
   Handler handler_;
   std::string session_;
-  std::deque<Request> waiting_;
+  std::deque<NodeRequest> waiting_;
   bool answering_ = false;
   TokenBucket allowance_;
 };

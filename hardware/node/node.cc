@@ -134,7 +134,7 @@ class Node::State : public std::enable_shared_from_this<Node::State> {
   std::string refusals();
 
   // The requests of a conductor (protocol.h).
-  Task<nlohmann::json> handle(Connection connection, Request request);
+  Task<nlohmann::json> handle(Connection connection, NodeRequest request);
   Task<nlohmann::json> hello();
   Task<nlohmann::json> begin(Connection connection, nlohmann::json arguments);
   Task<void> make_room(const Connection& connection);
@@ -203,7 +203,7 @@ void Node::State::accept(std::unique_ptr<SecureStream> stream) {
   }
   const auto connection = std::make_shared<ConductorConnection>(
       context_, std::move(stream),
-      [state = weak_from_this()](Connection from, Request request) -> Task<nlohmann::json> {
+      [state = weak_from_this()](Connection from, NodeRequest request) -> Task<nlohmann::json> {
         const Self self = state.lock();
         if (!self) throw SessionError("the node is ending");
         return self->handle(std::move(from), std::move(request));
@@ -287,7 +287,7 @@ Task<void> Node::State::end_everything(Self self) {
   self->network_.reset();
 }
 
-Task<json> Node::State::handle(Connection connection, Request request) {
+Task<json> Node::State::handle(Connection connection, NodeRequest request) {
   const Self self = shared_from_this();
   const json& arguments = request.arguments;
   // A conductor that fetches a journal goes on with the node that replaces this one.

@@ -44,14 +44,14 @@ std::string take_text(json& message, const char* key) {
 
 }  // namespace
 
-Bytes encode(const Request& request) {
+Bytes encode(const NodeRequest& request) {
   json message = request.arguments.is_object() ? request.arguments : json::object();
   message["id"] = request.id;
   message["do"] = request.verb;
   return bytes_of(message);
 }
 
-Bytes encode(const Answer& answer) {
+Bytes encode(const NodeAnswer& answer) {
   if (!answer.notice.empty()) {
     json message = answer.details.is_object() ? answer.details : json::object();
     message["notice"] = answer.notice;
@@ -62,18 +62,18 @@ Bytes encode(const Answer& answer) {
                    {"result", answer.details.is_object() ? answer.details : json::object()}});
 }
 
-Request parse_request(std::span<const std::byte> message) {
+NodeRequest parse_request(std::span<const std::byte> message) {
   json parsed = parse_object(message);
-  Request request;
+  NodeRequest request;
   request.id = take_id(parsed);
   request.verb = take_text(parsed, "do");
   request.arguments = std::move(parsed);
   return request;
 }
 
-Answer parse_answer(std::span<const std::byte> message) {
+NodeAnswer parse_answer(std::span<const std::byte> message) {
   json parsed = parse_object(message);
-  Answer answer;
+  NodeAnswer answer;
   if (parsed.contains("notice")) {
     answer.notice = take_text(parsed, "notice");
     if (answer.notice.empty()) throw ProtocolError("a notice of nothing");

@@ -66,24 +66,24 @@ class ProtocolError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-struct Request {
+struct NodeRequest {
   std::uint64_t id = 0;
   std::string verb;
   nlohmann::json arguments;  // an object
 };
 
 // A reply if `notice` is empty.
-struct Answer {
+struct NodeAnswer {
   std::uint64_t id = 0;
   std::string error;  // empty: it worked
   std::string notice;
   nlohmann::json details;  // an object: the result, or the notice's content
 };
 
-Bytes encode(const Request& request);
-Bytes encode(const Answer& answer);
-Request parse_request(std::span<const std::byte> message);
-Answer parse_answer(std::span<const std::byte> message);
+Bytes encode(const NodeRequest& request);
+Bytes encode(const NodeAnswer& answer);
+NodeRequest parse_request(std::span<const std::byte> message);
+NodeAnswer parse_answer(std::span<const std::byte> message);
 
 // 16 hexadecimal digits.
 bool is_session_id(const std::string& text);

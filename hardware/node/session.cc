@@ -31,7 +31,7 @@ std::string time_of_day() {
   return fmt::format("{:%H:%M:%S}", local);
 }
 
-SteeringSettings steering_of(const scenarios::Scenario& scenario) {
+FrameSteering steering_of(const scenarios::Scenario& scenario) {
   return {.limits = scenarios::frame_limits(scenario),
           .insert_stretches = scenario.cameras.frame_control->insert_stretches};
 }

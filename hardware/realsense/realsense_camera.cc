@@ -61,7 +61,7 @@ class RealsenseCamera::Outlet {
     if (checker_.joinable()) checker_.join();
   }
 
-  void deliver(const rs2::frame& frame, const Arrival& arrival, int exposure_unit_us) {
+  void deliver(const rs2::frame& frame, const FrameInstant& arrival, int exposure_unit_us) {
     const std::lock_guard lock(mutex_);
     if (!open_) return;
     try {
@@ -129,7 +129,7 @@ void RealsenseCamera::open_sensors() {
       try {
         chosen.sensor.start(
             [outlet = outlet_, unit = chosen.exposure_unit_us](const rs2::frame& frame) {
-              const Arrival arrival = Arrival::now();
+              const FrameInstant arrival = FrameInstant::now();
               outlet->deliver(frame, arrival, unit);
             });
       } catch (const rs2::error&) {

@@ -28,7 +28,7 @@ StampDomain domain_of(rs2_timestamp_domain domain) {
   }
 }
 
-std::optional<MonotonicTime> backend_of(const rs2::frame& frame, const Arrival& arrival) {
+std::optional<MonotonicTime> backend_of(const rs2::frame& frame, const FrameInstant& arrival) {
   const auto backend_ms = metadata(frame, RS2_FRAME_METADATA_BACKEND_TIMESTAMP);
   if (!backend_ms || *backend_ms == 0) return std::nullopt;
   const double lead_ms = arrival.wall_ms - static_cast<double>(*backend_ms);
@@ -38,13 +38,13 @@ std::optional<MonotonicTime> backend_of(const rs2::frame& frame, const Arrival& 
 
 }  // namespace
 
-Arrival Arrival::now() {
+FrameInstant FrameInstant::now() {
   const MonotonicTime monotonic = monotonic_now();
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   return {monotonic, to_ms(std::chrono::duration_cast<Nanoseconds>(wall))};
 }
 
-ReadFrame read_frame(const rs2::frame& frame, const Arrival& arrival, int exposure_unit_us) {
+ReadFrame read_frame(const rs2::frame& frame, const FrameInstant& arrival, int exposure_unit_us) {
   ReadFrame result;
   CameraFrame& read = result.frame;
   read.arrived = arrival.monotonic;

@@ -21,11 +21,11 @@
 
 namespace simbench::hardware {
 
-struct Arrival {
+struct FrameInstant {
   MonotonicTime monotonic{};
   double wall_ms = 0;  // the same instant, since 1970
 
-  static Arrival now();
+  static FrameInstant now();
 };
 
 struct ReadFrame {
@@ -33,7 +33,7 @@ struct ReadFrame {
   std::string_view missing;  // the first metadata value that it lacks; empty: none
 };
 
-ReadFrame read_frame(const rs2::frame& frame, const Arrival& arrival, int exposure_unit_us);
+ReadFrame read_frame(const rs2::frame& frame, const FrameInstant& arrival, int exposure_unit_us);
 
 }  // namespace simbench::hardware
 

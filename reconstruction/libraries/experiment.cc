@@ -95,7 +95,7 @@ class Experiment {
 
  private:
   static const scenarios::Studio& studio_of(const Scenario& scenario) {
-    const Studio checked(scenario, 1);  // throws InputError without a studio
+    const StudioRig checked(scenario, 1);  // throws InputError without a studio
     return *scenario.studio;
   }
 

@@ -51,7 +51,7 @@ class SetReconstruction {
   const Subject& subject_;
   std::uint64_t seed_;
   VisibilityTest visibility_;
-  Studio studio_;
+  StudioRig studio_;
   RayCaster caster_;
 };
 

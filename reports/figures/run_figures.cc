@@ -70,7 +70,7 @@ constexpr std::array<const char*, kLots> kLotNames = {"in a complete set of one 
 constexpr std::array<double, kLots> kBesideCamera = {0, 0.3, 0.3, -0.3, 0.3};
 
 // The frames of each lot by camera, as buckets of the x axis.
-struct Timeline {
+struct FrameTimeline {
   double first = 0;   // position
   double bucket = 1;  // width
   std::vector<std::array<std::set<std::int64_t>, kLots>> cameras;
@@ -125,8 +125,8 @@ double lost_position(const RunDetail& run, const LostFrame& lost) {
          static_cast<double>(after->counter - lost.counter);
 }
 
-Timeline timeline_of(const RunDetail& run) {
-  Timeline timeline;
+FrameTimeline timeline_of(const RunDetail& run) {
+  FrameTimeline timeline;
   timeline.cameras.resize(run.cameras.size());
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
@@ -157,7 +157,7 @@ Timeline timeline_of(const RunDetail& run) {
 }
 
 // A line over every run of adjacent buckets.
-FigureSeries unbroken(const Timeline& timeline, std::size_t camera) {
+FigureSeries unbroken(const FrameTimeline& timeline, std::size_t camera) {
   constexpr auto kLot = static_cast<std::size_t>(Lot::kGathered);
   FigureSeries line = series(kLotNames[kLot], Mark::kLine, static_cast<int>(kLot));
   const std::set<std::int64_t>& buckets = timeline.cameras[camera][kLot];
@@ -178,7 +178,7 @@ FigureSeries unbroken(const Timeline& timeline, std::size_t camera) {
   return line;
 }
 
-FigurePanel frames_panel(const RunDetail& run, const Timeline& timeline) {
+FigurePanel frames_panel(const RunDetail& run, const FrameTimeline& timeline) {
   FigurePanel made = panel("Frames", frame_axis(run), "camera");
   made.x_is_pulse = run.has_pulses;
   for (std::size_t camera = 0; camera < timeline.cameras.size(); ++camera) {

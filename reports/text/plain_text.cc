@@ -76,13 +76,13 @@ std::string pad(const std::string& text, std::size_t width, Align align) {
 }
 
 // The width of a column: natural, and narrowed as far as possible.
-struct Need {
+struct ColumnWidth {
   std::size_t natural = 0;
   std::size_t least = 0;
 };
 
-Need need_of(const Column& column, std::size_t index, const Rows& rows) {
-  Need need;
+ColumnWidth need_of(const Column& column, std::size_t index, const Rows& rows) {
+  ColumnWidth need;
   need.natural = need.least = widest(text_lines(column.header));
   for (const auto& row : rows) {
     const std::string& cell = row[index];
@@ -102,7 +102,7 @@ std::size_t width_of(const Part& part) {
 }
 
 // Widens narrowed columns to the page's width, the narrowest first, so that the widest lose most.
-void widen(Part& part, const std::vector<Need>& needs, std::size_t page_width) {
+void widen(Part& part, const std::vector<ColumnWidth>& needs, std::size_t page_width) {
   const std::size_t used = width_of(part);
   for (std::size_t left = page_width - std::min(page_width, used); left > 0; --left) {
     Slot* narrowest = nullptr;
@@ -126,7 +126,8 @@ void narrow_last(Part& part, std::size_t page_width) {
 }
 
 // The columns in order, as many in a part as fit.
-std::vector<Part> dealt_out(const std::vector<Need>& needs, const Part& keys, std::size_t width) {
+std::vector<Part> dealt_out(const std::vector<ColumnWidth>& needs, const Part& keys,
+                            std::size_t width) {
   std::vector<Part> parts = {keys};
   for (std::size_t c = keys.size(); c < needs.size(); ++c) {
     const bool fits = width_of(parts.back()) + kGap + needs[c].least <= width;
@@ -136,7 +137,7 @@ std::vector<Part> dealt_out(const std::vector<Need>& needs, const Part& keys, st
   return parts;
 }
 
-std::vector<Part> parts_of(const std::vector<Need>& needs, std::size_t key_columns) {
+std::vector<Part> parts_of(const std::vector<ColumnWidth>& needs, std::size_t key_columns) {
   Part all;
   for (std::size_t c = 0; c < needs.size(); ++c) all.push_back({c, needs[c].natural});
   if (!the_page_width || all.empty() || width_of(all) <= *the_page_width) return {all};
@@ -271,7 +272,7 @@ std::string fitted(std::string_view text) {
 }
 
 std::string aligned(const Table& table) {
-  std::vector<Need> needs;
+  std::vector<ColumnWidth> needs;
   needs.reserve(table.columns.size());
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     needs.push_back(need_of(table.columns[c], c, table.rows));

@@ -5,8 +5,9 @@
 
 namespace simbench::sim {
 
-AutoExposure::AutoExposure(const scenarios::AutoExposure& settings, Nanoseconds initial,
-                           std::uint64_t run_seed, std::size_t camera, TrueTime camera_start)
+AutoExposureLoop::AutoExposureLoop(const scenarios::AutoExposure& settings, Nanoseconds initial,
+                                   std::uint64_t run_seed, std::size_t camera,
+                                   TrueTime camera_start)
     : settings_(settings),
       stream_(run_seed, "camera/auto_exposure", camera),
       steps_{{camera_start, initial}} {
@@ -16,7 +17,7 @@ AutoExposure::AutoExposure(const scenarios::AutoExposure& settings, Nanoseconds 
   }
 }
 
-Nanoseconds AutoExposure::stepped(TrueTime t) {
+Nanoseconds AutoExposureLoop::stepped(TrueTime t) {
   while (next_step_ <= t) {
     steps_.push_back({next_step_, from_ms(stream_.uniform(settings_.min_ms, settings_.max_ms))});
     next_step_ += from_ms(stream_.exponential(settings_.step_interval_exponential_ms));

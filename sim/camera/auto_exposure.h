@@ -8,7 +8,7 @@
 // Source: docs/design.md section 7; the process is an assumption (scenarios/schema.json).
 // Complexity: O(log steps so far).
 //
-//   AutoExposure exposure(scenario.cameras.auto_exposure, from_ms(8.0), seed, 3, camera_start);
+//   AutoExposureLoop exposure(scenario.cameras.auto_exposure, from_ms(8.0), seed, 3, camera_start);
 //   shutter.set_exposure(exposure.at(engine.now()));
 #ifndef SIMBENCH_SIM_CAMERA_AUTO_EXPOSURE_H_
 #define SIMBENCH_SIM_CAMERA_AUTO_EXPOSURE_H_
@@ -23,11 +23,11 @@
 
 namespace simbench::sim {
 
-class AutoExposure {
+class AutoExposureLoop {
  public:
   // `initial`: the exposure when the camera starts, and always if there is no auto-exposure.
-  AutoExposure(const scenarios::AutoExposure& settings, Nanoseconds initial, std::uint64_t run_seed,
-               std::size_t camera, TrueTime camera_start);
+  AutoExposureLoop(const scenarios::AutoExposure& settings, Nanoseconds initial,
+                   std::uint64_t run_seed, std::size_t camera, TrueTime camera_start);
 
   // The exposure time in force at `t`.
   Nanoseconds at(TrueTime t) { return settings_.is_on() ? stepped(t) : steps_.front().exposure; }

@@ -70,7 +70,7 @@ class HostGroup {
   // The capture begins now, with its faults: its trigger has pulses up to slot `last`.
   void on_capture_start(const TriggerTree& trigger, std::int64_t last);
 
-  Network& network() { return network_; }
+  SimNetwork& network() { return network_; }
   FrameSupply& frames() { return frames_; }
   const Outages& outages() const { return outages_; }
 
@@ -87,7 +87,7 @@ class HostGroup {
   RecordingSink& sink_;
   RunLoad load_;
   Outages outages_;
-  Network network_;
+  SimNetwork network_;
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;
   DriftFiles drift_files_;

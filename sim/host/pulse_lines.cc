@@ -49,7 +49,7 @@ std::optional<std::int64_t> TriggerLine::first_from(TrueTime at) const {
   return tree_->first_slot_from(at);
 }
 
-SimPulseInput::SimPulseInput(SimHost& host, const PulseSource& source, std::string_view name)
+SimPulseInput::SimPulseInput(SimHost& host, const PulseSchedule& source, std::string_view name)
     : host_(host),
       source_(source),
       latency_key_(std::string("host: interrupt latency, ").append(name)),

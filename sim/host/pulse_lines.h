@@ -1,6 +1,6 @@
 // The pulse lines of a host: the sources of pulses, and how the host stamps them.
 //
-//  - PulseSource: a GNSS receiver beside the host (PpsReceiver), or the trigger (TriggerLine).
+//  - PulseSchedule: a GNSS receiver beside the host (PpsReceiver), or the trigger (TriggerLine).
 //    Pulses are numbered and each is a function of its number, so they need no generation: an
 //    unused line costs nothing, however long it is connected.
 //  - SimPulseInput: the line at the host. A pulse interrupts it, and the interrupt reads its
@@ -34,9 +34,9 @@ namespace simbench::sim {
 
 class SimHost;
 
-class PulseSource {
+class PulseSchedule {
  public:
-  virtual ~PulseSource() = default;
+  virtual ~PulseSchedule() = default;
   // The first pulse due at or after `at`; nothing while it is not known when pulses will come.
   virtual std::optional<std::int64_t> first_from(TrueTime at) const = 0;
   // The number of the last pulse there will be.
@@ -55,7 +55,7 @@ inline constexpr Nanoseconds kGnssTimeAtTrueZero = std::chrono::milliseconds(302
 
 // A receiver's pulse k is at k full seconds of GNSS time, with an error N(pps_jitter_sigma_us) per
 // pulse and host; its message announces k seconds.
-class PpsReceiver final : public PulseSource {
+class PpsReceiver final : public PulseSchedule {
  public:
   PpsReceiver(const scenarios::PulseLines& lines, std::uint64_t run_seed, PeerId host);
 
@@ -72,7 +72,7 @@ class PpsReceiver final : public PulseSource {
 
 // The main trigger's pulses, during a capture; numbers are slots, and empty slots have none. The
 // cable to the host is part of the interrupt's fixed latency.
-class TriggerLine final : public PulseSource {
+class TriggerLine final : public PulseSchedule {
  public:
   // The trigger has started: `tree`, which must outlive the line, has pulses up to slot `last`.
   void start(const TriggerTree& tree, std::int64_t last);
@@ -97,7 +97,7 @@ class TriggerLine final : public PulseSource {
 class SimPulseInput final : public PulseInput {
  public:
   // `host` and `source` must outlive the line, `name` tells the lines of a host apart.
-  SimPulseInput(SimHost& host, const PulseSource& source, std::string_view name);
+  SimPulseInput(SimHost& host, const PulseSchedule& source, std::string_view name);
 
   Task<std::optional<PulseStamp>> next(SteadyTime deadline) override;
 
@@ -110,7 +110,7 @@ class SimPulseInput final : public PulseInput {
   PulseStamp stamp(std::int64_t number, TrueTime interrupt) const;
 
   SimHost& host_;
-  const PulseSource& source_;
+  const PulseSchedule& source_;
   ComponentKey latency_key_;
   TrueTime opened_at_;
   WaitPoint changed_;

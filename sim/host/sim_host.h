@@ -94,7 +94,7 @@ struct HostWorld {
   VirtualContext& context;
   const scenarios::Hosts& hosts;
   const scenarios::Network& network_parameters;
-  Network& network;
+  SimNetwork& network;
   const RunLoad& load;
   const Outages& outages;
   const TriggerLine& trigger_line;

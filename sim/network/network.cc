@@ -26,7 +26,7 @@ constexpr Nanoseconds kMaxCaptureBacklog = std::chrono::seconds(1);
 
 }  // namespace
 
-Network::Path::Path(const Network& network, PeerId from_host, PeerId to_host, Transport kind)
+SimNetwork::Path::Path(const SimNetwork& network, PeerId from_host, PeerId to_host, Transport kind)
     : from(from_host),
       to(to_host),
       transport(kind),
@@ -38,8 +38,8 @@ Network::Path::Path(const Network& network, PeerId from_host, PeerId to_host, Tr
   }
 }
 
-Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
-                 std::size_t hosts, const RunLoad& load, const Outages& outages)
+SimNetwork::SimNetwork(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
+                       std::size_t hosts, const RunLoad& load, const Outages& outages)
     : engine_(engine),
       parameters_(parameters),
       datagram_law_(scenarios::datagram_law(parameters)),
@@ -64,7 +64,7 @@ Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint
   trunk_ports_.resize(2 * static_cast<std::size_t>(*std::ranges::max_element(switches)) + 2);
 }
 
-PathId Network::open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint) {
+PathId SimNetwork::open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint) {
   SIMBENCH_ASSERT(from != to && std::max(from, to) < host_ports_.size(), "no such link");
   auto& ids = path_ids_[static_cast<std::size_t>(transport)];
   const auto [found, is_new] =
@@ -80,7 +80,7 @@ PathId Network::open(PeerId from, PeerId to, Transport transport, Endpoint& endp
   return path;
 }
 
-void Network::send(PathId path_id, MessageId id, Bytes message) {
+void SimNetwork::send(PathId path_id, MessageId id, Bytes message) {
   Path& path = paths_[path_id];
   if (path.nagle) {
     std::optional<Segment> segment = path.nagle->add(path_id, id, std::move(message));
@@ -92,7 +92,7 @@ void Network::send(PathId path_id, MessageId id, Bytes message) {
   send_segment(std::move(segment));
 }
 
-void Network::send_segment(Segment&& segment) {
+void SimNetwork::send_segment(Segment&& segment) {
   const PathId path_id = segment.path;
   Path& path = paths_[path_id];
   const MessageId first = segment.first;
@@ -122,8 +122,8 @@ void Network::send_segment(Segment&& segment) {
   path.sender->on_left(first, count, passed);
 }
 
-void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
-                            Bytes message, Endpoint& sender) {
+void SimNetwork::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
+                               Bytes message, Endpoint& sender) {
   Segment segment{.first = id, .bytes = static_cast<double>(message.size())};
   if (catch_up_) catch_up_();
   const TrueTime at_card = engine_.now() + sender.to_card(id);
@@ -145,7 +145,7 @@ void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> re
   sender.on_left(id, 1, passed);
 }
 
-void Network::replicate(const GroupMessage& message, TrueTime at) {
+void SimNetwork::replicate(const GroupMessage& message, TrueTime at) {
   const std::int64_t here = message.segment.switch_number;
   const Nanoseconds duration = on_the_line(message.segment);
   bool is_counted = message.segment.is_counted;
@@ -176,20 +176,20 @@ void Network::replicate(const GroupMessage& message, TrueTime at) {
   }
 }
 
-void Network::forward(GroupMessage message, TrueTime at, EventKind where) {
+void SimNetwork::forward(GroupMessage message, TrueTime at, EventKind where) {
   const std::uint32_t id = group_messages_.add();
   group_messages_[id] = std::move(message);
   engine_.schedule(at, handler_id_, where, id);
 }
 
-bool Network::is_wireless(PeerId from, const std::vector<Recipient>& recipients) const {
+bool SimNetwork::is_wireless(PeerId from, const std::vector<Recipient>& recipients) const {
   if (cell_ == nullptr) return false;
   return std::ranges::any_of(recipients, [this, from](const Recipient& recipient) {
     return is_wireless(from, paths_[recipient.path].to);
   });
 }
 
-void Network::enter_cell(SegmentId id) {
+void SimNetwork::enter_cell(SegmentId id) {
   const Segment& segment = segments_[id];
   const Path& path = paths_[segment.path];
   const bool is_up = cell_->is_station(path.from) && !segment.is_at_access_point;
@@ -204,7 +204,7 @@ void Network::enter_cell(SegmentId id) {
               path.draws.of(segment.first).stream(is_up ? 0 : 1));
 }
 
-void Network::leave_cell(SegmentId id, bool is_lost) {
+void SimNetwork::leave_cell(SegmentId id, bool is_lost) {
   Segment& segment = segments_[id];
   Path& path = paths_[segment.path];
   if (is_lost) {
@@ -221,7 +221,7 @@ void Network::leave_cell(SegmentId id, bool is_lost) {
          passes_port(path.to, true) ? switch_ports_[path.to].pass(now, on_the_line(segment)) : now);
 }
 
-Segment Network::copy_for(const Recipient& recipient, GroupMessage& message) {
+Segment SimNetwork::copy_for(const Recipient& recipient, GroupMessage& message) {
   Segment copy = message.segment;
   copy.path = recipient.path;
   copy.first = recipient.id;
@@ -229,7 +229,7 @@ Segment Network::copy_for(const Recipient& recipient, GroupMessage& message) {
   return copy;
 }
 
-void Network::enter_cell_as_group(std::uint32_t id) {
+void SimNetwork::enter_cell_as_group(std::uint32_t id) {
   GroupMessage& message = group_messages_[id];
   const PeerId from = paths_[message.recipients.front().path].from;
   const bool is_up = cell_->is_station(from) && !message.segment.is_at_access_point;
@@ -256,7 +256,7 @@ void Network::enter_cell_as_group(std::uint32_t id) {
   cell_->send(hop, draws.of(message.segment.first).stream(is_up ? 0 : 1));
 }
 
-void Network::leave_cell_as_group(std::uint32_t id, bool is_lost) {
+void SimNetwork::leave_cell_as_group(std::uint32_t id, bool is_lost) {
   GroupMessage& message = group_messages_[id];
   const PeerId from = paths_[message.recipients.front().path].from;
   const bool is_up = cell_->is_station(from) && !message.segment.is_at_access_point;
@@ -275,14 +275,14 @@ void Network::leave_cell_as_group(std::uint32_t id, bool is_lost) {
   group_messages_.release(id);
 }
 
-void Network::send_capture_traffic(PeerId from, double bytes, TrueTime at) {
+void SimNetwork::send_capture_traffic(PeerId from, double bytes, TrueTime at) {
   if (rate_.is_infinite() || outages_.unreachable(from, at)) return;
   Port& port = host_ports_[from];
   if (port.backlog(at) > kMaxCaptureBacklog) return;
   port.pass(at, rate_.duration(bytes));
 }
 
-void Network::handle(Event event) {
+void SimNetwork::handle(Event event) {
   switch (static_cast<EventKind>(event.kind)) {
     case kAtSwitch:
       pass_switch(event.subject, event.time);
@@ -311,7 +311,7 @@ void Network::handle(Event event) {
   }
 }
 
-void Network::pass_switch(SegmentId id, TrueTime at) {
+void SimNetwork::pass_switch(SegmentId id, TrueTime at) {
   Segment& segment = segments_[id];
   const PeerId to = paths_[segment.path].to;
   const Nanoseconds duration = on_the_line(segment);
@@ -325,7 +325,7 @@ void Network::pass_switch(SegmentId id, TrueTime at) {
   engine_.schedule(trunk_ports_[port].pass(at, duration), handler_id_, kAtSwitch, id);
 }
 
-void Network::travel(SegmentId id, TrueTime at) {
+void SimNetwork::travel(SegmentId id, TrueTime at) {
   if (paths_[segments_[id].path].transport != Transport::kStream) {
     travel_as_datagram(id, at);
   } else {
@@ -333,7 +333,7 @@ void Network::travel(SegmentId id, TrueTime at) {
   }
 }
 
-void Network::travel_as_datagram(SegmentId id, TrueTime at) {
+void SimNetwork::travel_as_datagram(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
   Path& path = paths_[segment.path];
   RandomStream draw = path.draws.stream(segment.first);
@@ -355,7 +355,7 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
 }
 
 // Schedules the arrival of a datagram, corrected for its time in the switch.
-void Network::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
+void SimNetwork::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
   Segment& segment = segments_[id];
   const Path& path = paths_[segment.path];
   Bytes& message = segment.messages.front();
@@ -368,7 +368,7 @@ void Network::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
   engine_.schedule(arrival, handler_id_, kArrival, id);
 }
 
-void Network::travel_on_stream(SegmentId id, TrueTime at) {
+void SimNetwork::travel_on_stream(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
   Path& path = paths_[segment.path];
   RandomStream draw = path.draws.stream(segment.first);
@@ -392,7 +392,7 @@ void Network::travel_on_stream(SegmentId id, TrueTime at) {
   engine_.schedule(path.last_arrival, handler_id_, kArrival, id);
 }
 
-void Network::arrive(SegmentId id) {
+void SimNetwork::arrive(SegmentId id) {
   Segment segment = release(id);
   Path& path = paths_[segment.path];
   if (path.transport != Transport::kStream && outages_.unreachable(path.to, engine_.now())) {
@@ -413,7 +413,7 @@ void Network::arrive(SegmentId id) {
   if (path.receiver != nullptr) path.receiver->on_arrival();
 }
 
-void Network::acknowledge(PathId path_id) {
+void SimNetwork::acknowledge(PathId path_id) {
   Nagle& nagle = *paths_[path_id].nagle;
   Path& way_back = paths_[path_id ^ 1];
   RandomStream draw(run_seed_, kAckDraws, direction_of(way_back.from, way_back.to),
@@ -429,7 +429,7 @@ void Network::acknowledge(PathId path_id) {
   engine_.schedule(nagle.ack_in_order(arrival), handler_id_, kAckArrival, path_id);
 }
 
-void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
+void SimNetwork::report(const Segment& segment, std::optional<TrueTime> arrival) {
   if (segment.is_counted) messages_ += segment.messages.size();
   if (observer_ == nullptr) return;
   if (catch_up_) catch_up_();
@@ -448,13 +448,13 @@ void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
   }
 }
 
-Network::SegmentId Network::keep(Segment&& segment) {
+SimNetwork::SegmentId SimNetwork::keep(Segment&& segment) {
   const SegmentId id = segments_.add();
   segments_[id] = std::move(segment);
   return id;
 }
 
-Segment Network::release(SegmentId id) {
+Segment SimNetwork::release(SegmentId id) {
   segments_.release(id);
   return std::move(segments_[id]);
 }

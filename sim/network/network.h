@@ -41,7 +41,7 @@
 // Cost: one event per message, two with a bandwidth; no allocation of its own in steady state.
 // Source: docs/design.md section 7; docs/reference/calibration.md sections 2 and 5 (H9).
 //
-//   Network network(engine, scenario.network, seed, host_count, load, outages);
+//   SimNetwork network(engine, scenario.network, seed, host_count, load, outages);
 //   PathId path = network.open(0, 3, Transport::kStream, endpoint);
 //   network.send(path, 0, std::move(bytes));  // leaves host 0 now
 #ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
@@ -94,14 +94,14 @@ class Endpoint {
   virtual void on_left(MessageId first, std::size_t count, TrueTime passed) = 0;
 };
 
-class Network : private EventHandler {
+class SimNetwork : private EventHandler {
  public:
   // `engine`, `parameters` and `outages` must outlive the network.
-  Network(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
-          std::size_t hosts, const RunLoad& load, const Outages& outages);
-  Network(const Network&) = delete;
-  Network& operator=(const Network&) = delete;
-  ~Network() override = default;
+  SimNetwork(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
+             std::size_t hosts, const RunLoad& load, const Outages& outages);
+  SimNetwork(const SimNetwork&) = delete;
+  SimNetwork& operator=(const SimNetwork&) = delete;
+  ~SimNetwork() override = default;
 
   // The path from `from` to `to`. `endpoint` is notified of messages that leave on this path and of
   // those that arrive on the way back; it must outlive the network's events. Messages that arrive
@@ -143,7 +143,7 @@ class Network : private EventHandler {
   using SegmentId = std::uint32_t;
   // The two paths of a link and transport have numbers 2n and 2n + 1.
   struct Path {
-    Path(const Network& network, PeerId from_host, PeerId to_host, Transport kind);
+    Path(const SimNetwork& network, PeerId from_host, PeerId to_host, Transport kind);
 
     PeerId from;
     PeerId to;

@@ -32,38 +32,40 @@ bool HostStreams::is_own(std::uint32_t address) const {
   return address == own_address() || address >> 24 == 127;
 }
 
-std::shared_ptr<Stream> HostStreams::open(std::function<void()> on_change) {
-  auto stream = std::make_shared<Stream>();
+std::shared_ptr<StreamSocket> HostStreams::open(std::function<void()> on_change) {
+  auto stream = std::make_shared<StreamSocket>();
   stream->on_change = std::move(on_change);
   streams_.push_back(stream);
   return stream;
 }
 
-int HostStreams::bind(Stream& stream, shim::Address address) {
-  if (stream.local.port != 0 || stream.state != Stream::State::kFresh) return EINVAL;
+int HostStreams::bind(StreamSocket& stream, shim::Address address) {
+  if (stream.local.port != 0 || stream.state != StreamSocket::State::kFresh) return EINVAL;
   if (address.host != 0 && !is_own(address.host)) return EADDRNOTAVAIL;
   if (address.port == 0) {
     stream.local.host = address.host;
     return bind_somewhere(stream);
   }
-  const bool is_taken = std::ranges::any_of(streams_, [&](const std::shared_ptr<Stream>& each) {
-    const bool is_same_host =
-        each->local.host == 0 || address.host == 0 || each->local.host == address.host;
-    // Connections that came through a listener have its port.
-    return each->local.port == address.port && is_same_host && each->peer.port == 0;
-  });
+  const bool is_taken =
+      std::ranges::any_of(streams_, [&](const std::shared_ptr<StreamSocket>& each) {
+        const bool is_same_host =
+            each->local.host == 0 || address.host == 0 || each->local.host == address.host;
+        // Connections that came through a listener have its port.
+        return each->local.port == address.port && is_same_host && each->peer.port == 0;
+      });
   if (is_taken) return EADDRINUSE;
   stream.local = address;
   return 0;
 }
 
-int HostStreams::bind_somewhere(Stream& stream) {
+int HostStreams::bind_somewhere(StreamSocket& stream) {
   for (int tried = 0; tried <= kLastFreeStreamPort - kFirstFreeStreamPort; ++tried) {
     const std::uint16_t port = next_port_;
     next_port_ =
         port == kLastFreeStreamPort ? kFirstFreeStreamPort : static_cast<std::uint16_t>(port + 1);
     const bool is_free = std::ranges::none_of(
-        streams_, [port](const std::shared_ptr<Stream>& each) { return each->local.port == port; });
+        streams_,
+        [port](const std::shared_ptr<StreamSocket>& each) { return each->local.port == port; });
     if (!is_free) continue;
     stream.local.port = port;
     return 0;
@@ -71,30 +73,31 @@ int HostStreams::bind_somewhere(Stream& stream) {
   return EADDRINUSE;
 }
 
-int HostStreams::listen(Stream& stream, std::size_t backlog) {
-  const bool listens = stream.state == Stream::State::kListening;
-  if (!listens && stream.state != Stream::State::kFresh) return EINVAL;
+int HostStreams::listen(StreamSocket& stream, std::size_t backlog) {
+  const bool listens = stream.state == StreamSocket::State::kListening;
+  if (!listens && stream.state != StreamSocket::State::kFresh) return EINVAL;
   if (stream.local.port == 0) {
     const int error = bind_somewhere(stream);
     if (error != 0) return error;
   }
-  stream.state = Stream::State::kListening;
+  stream.state = StreamSocket::State::kListening;
   stream.backlog = std::clamp(backlog, std::size_t{1}, kMostBacklog);
   return 0;
 }
 
-std::shared_ptr<Stream> HostStreams::accept(Stream& listener, std::function<void()> on_change) {
+std::shared_ptr<StreamSocket> HostStreams::accept(StreamSocket& listener,
+                                                  std::function<void()> on_change) {
   if (listener.accepted.empty()) return nullptr;
-  std::shared_ptr<Stream> stream = std::move(listener.accepted.front());
+  std::shared_ptr<StreamSocket> stream = std::move(listener.accepted.front());
   listener.accepted.pop_front();
   stream->on_change = std::move(on_change);
   return stream;
 }
 
-Task<int> HostStreams::connect(Stream& stream, shim::Address peer) {
-  if (stream.state == Stream::State::kConnecting) co_return EALREADY;
-  if (stream.state == Stream::State::kOpen) co_return EISCONN;
-  if (stream.state != Stream::State::kFresh) co_return ECONNABORTED;
+Task<int> HostStreams::connect(StreamSocket& stream, shim::Address peer) {
+  if (stream.state == StreamSocket::State::kConnecting) co_return EALREADY;
+  if (stream.state == StreamSocket::State::kOpen) co_return EISCONN;
+  if (stream.state != StreamSocket::State::kFresh) co_return ECONNABORTED;
   const std::uint32_t number = peer.host - HostNetwork::kFirstAddress;
   if (!is_own(peer.host) && number >= hosts_) co_return ENETUNREACH;
   if (stream.local.port == 0) {
@@ -103,21 +106,21 @@ Task<int> HostStreams::connect(Stream& stream, shim::Address peer) {
   }
   stream.local.host = peer.host >> 24 == 127 ? peer.host : own_address();
   stream.peer = peer;
-  stream.state = Stream::State::kConnecting;
+  stream.state = StreamSocket::State::kConnecting;
   co_await transmit(stream, SegmentKind::kOpen);
-  co_return stream.state == Stream::State::kConnecting ? EINPROGRESS
-                                                       : std::exchange(stream.error, 0);
+  co_return stream.state == StreamSocket::State::kConnecting ? EINPROGRESS
+                                                             : std::exchange(stream.error, 0);
 }
 
-Task<int> HostStreams::write(Stream& stream, std::span<const std::byte> data,
+Task<int> HostStreams::write(StreamSocket& stream, std::span<const std::byte> data,
                              std::size_t& written) {
   written = 0;
   if (stream.error != 0) co_return std::exchange(stream.error, 0);
-  if (stream.has_ended || stream.state == Stream::State::kClosed) co_return EPIPE;
-  if (stream.state == Stream::State::kConnecting) co_return EAGAIN;
-  if (stream.state != Stream::State::kOpen) co_return ENOTCONN;
+  if (stream.has_ended || stream.state == StreamSocket::State::kClosed) co_return EPIPE;
+  if (stream.state == StreamSocket::State::kConnecting) co_return EAGAIN;
+  if (stream.state != StreamSocket::State::kOpen) co_return ENOTCONN;
   while (written < data.size() && stream.on_the_way < kWindow &&
-         stream.state == Stream::State::kOpen) {
+         stream.state == StreamSocket::State::kOpen) {
     const std::size_t size =
         std::min({data.size() - written, kMostSegment, kWindow - stream.on_the_way});
     const auto piece = data.subspan(written, size);
@@ -128,13 +131,13 @@ Task<int> HostStreams::write(Stream& stream, std::span<const std::byte> data,
   co_return written == 0 && !data.empty() ? EAGAIN : 0;
 }
 
-Task<int> HostStreams::read(Stream& stream, std::size_t most, bool leaves_it, Bytes& data) {
+Task<int> HostStreams::read(StreamSocket& stream, std::size_t most, bool leaves_it, Bytes& data) {
   data.clear();
   if (stream.input.empty()) {
     if (stream.error != 0) co_return std::exchange(stream.error, 0);
-    if (stream.peer_ended || stream.state == Stream::State::kClosed) co_return 0;
-    const bool may_come =
-        stream.state == Stream::State::kOpen || stream.state == Stream::State::kConnecting;
+    if (stream.peer_ended || stream.state == StreamSocket::State::kClosed) co_return 0;
+    const bool may_come = stream.state == StreamSocket::State::kOpen ||
+                          stream.state == StreamSocket::State::kConnecting;
     co_return may_come ? EAGAIN : ENOTCONN;
   }
   const auto size = static_cast<std::ptrdiff_t>(std::min(most, stream.input.size()));
@@ -146,14 +149,14 @@ Task<int> HostStreams::read(Stream& stream, std::size_t most, bool leaves_it, By
   co_return 0;
 }
 
-Task<void> HostStreams::give_credit(Stream& stream, std::size_t at_least) {
-  if (stream.to_credit < at_least || stream.state != Stream::State::kOpen) co_return;
+Task<void> HostStreams::give_credit(StreamSocket& stream, std::size_t at_least) {
+  if (stream.to_credit < at_least || stream.state != StreamSocket::State::kOpen) co_return;
   const std::size_t bytes = std::exchange(stream.to_credit, 0);
   co_await transmit(stream, SegmentKind::kCredit, credit_of(bytes));
 }
 
-Task<int> HostStreams::shut_down(Stream& stream, int how) {
-  if (stream.state != Stream::State::kOpen) co_return ENOTCONN;
+Task<int> HostStreams::shut_down(StreamSocket& stream, int how) {
+  if (stream.state != StreamSocket::State::kOpen) co_return ENOTCONN;
   if (how != SHUT_WR) stream.peer_ended = true;
   if (how == SHUT_RD || stream.has_ended) co_return 0;
   stream.has_ended = true;
@@ -161,16 +164,16 @@ Task<int> HostStreams::shut_down(Stream& stream, int how) {
   co_return 0;
 }
 
-Task<void> HostStreams::close(std::shared_ptr<Stream> stream) {
+Task<void> HostStreams::close(std::shared_ptr<StreamSocket> stream) {
   std::erase(streams_, stream);
   stream->on_change = [] {};
-  for (const std::shared_ptr<Stream>& each : stream->accepted) {
+  for (const std::shared_ptr<StreamSocket>& each : stream->accepted) {
     std::erase(streams_, each);
     co_await transmit(*each, SegmentKind::kRefused);
   }
-  const bool is_connected =
-      stream->state == Stream::State::kOpen || stream->state == Stream::State::kConnecting;
-  stream->state = Stream::State::kClosed;
+  const bool is_connected = stream->state == StreamSocket::State::kOpen ||
+                            stream->state == StreamSocket::State::kConnecting;
+  stream->state = StreamSocket::State::kClosed;
   if (!is_connected) co_return;
   // What was not read is lost, and the peer hears of it.
   if (!stream->input.empty()) {
@@ -180,17 +183,17 @@ Task<void> HostStreams::close(std::shared_ptr<Stream> stream) {
   }
 }
 
-int HostStreams::readiness(const Stream& stream) {
+int HostStreams::readiness(const StreamSocket& stream) {
   switch (stream.state) {
-    case Stream::State::kFresh:
+    case StreamSocket::State::kFresh:
       return POLLOUT | POLLHUP;
-    case Stream::State::kListening:
+    case StreamSocket::State::kListening:
       return stream.accepted.empty() ? 0 : POLLIN;
-    case Stream::State::kConnecting:
+    case StreamSocket::State::kConnecting:
       return 0;
-    case Stream::State::kClosed:
+    case StreamSocket::State::kClosed:
       return POLLIN | POLLOUT | POLLHUP | (stream.error != 0 ? POLLERR : 0);
-    case Stream::State::kOpen:
+    case StreamSocket::State::kOpen:
       break;
   }
   const int input = !stream.input.empty() || stream.peer_ended ? POLLIN : 0;
@@ -200,16 +203,16 @@ int HostStreams::readiness(const Stream& stream) {
   return input | output | end;
 }
 
-std::shared_ptr<Stream> HostStreams::find(const shim::Address& local,
-                                          const shim::Address& peer) const {
-  const auto found = std::ranges::find_if(streams_, [&](const std::shared_ptr<Stream>& each) {
+std::shared_ptr<StreamSocket> HostStreams::find(const shim::Address& local,
+                                                const shim::Address& peer) const {
+  const auto found = std::ranges::find_if(streams_, [&](const std::shared_ptr<StreamSocket>& each) {
     return each->local.port == local.port && each->peer.port == peer.port &&
            each->peer.host == peer.host;
   });
   return found == streams_.end() ? nullptr : *found;
 }
 
-Task<void> HostStreams::transmit(const Stream& stream, SegmentKind kind, Bytes data) {
+Task<void> HostStreams::transmit(const StreamSocket& stream, SegmentKind kind, Bytes data) {
   return transmit(
       Segment{.kind = kind, .from = stream.local, .to = stream.peer, .data = std::move(data)});
 }
@@ -254,7 +257,7 @@ Task<void> HostStreams::take(Segment segment) {
     co_await take_opening(std::move(segment));
     co_return;
   }
-  const std::shared_ptr<Stream> stream = find(segment.to, segment.from);
+  const std::shared_ptr<StreamSocket> stream = find(segment.to, segment.from);
   if (stream == nullptr) {
     // Nobody is there to read it.
     if (segment.kind != SegmentKind::kData && segment.kind != SegmentKind::kOpened) co_return;
@@ -262,14 +265,14 @@ Task<void> HostStreams::take(Segment segment) {
         Segment{.kind = SegmentKind::kRefused, .from = segment.to, .to = segment.from});
     co_return;
   }
-  if (!apply(*stream, segment)) stream->state = Stream::State::kClosed;
+  if (!apply(*stream, segment)) stream->state = StreamSocket::State::kClosed;
   stream->on_change();
 }
 
-bool HostStreams::apply(Stream& stream, Segment& segment) {
+bool HostStreams::apply(StreamSocket& stream, Segment& segment) {
   switch (segment.kind) {
     case SegmentKind::kOpened:
-      stream.state = Stream::State::kOpen;
+      stream.state = StreamSocket::State::kOpen;
       return true;
     case SegmentKind::kData:
       stream.input.insert(stream.input.end(), segment.data.begin(), segment.data.end());
@@ -288,21 +291,21 @@ bool HostStreams::apply(Stream& stream, Segment& segment) {
     case SegmentKind::kOpen:
       break;
   }
-  stream.error = stream.state == Stream::State::kConnecting ? ECONNREFUSED : ECONNRESET;
+  stream.error = stream.state == StreamSocket::State::kConnecting ? ECONNREFUSED : ECONNRESET;
   return false;
 }
 
 Task<void> HostStreams::take_opening(Segment segment) {
-  const auto found = std::ranges::find_if(streams_, [&](const std::shared_ptr<Stream>& each) {
-    return each->state == Stream::State::kListening && each->local.port == segment.to.port &&
+  const auto found = std::ranges::find_if(streams_, [&](const std::shared_ptr<StreamSocket>& each) {
+    return each->state == StreamSocket::State::kListening && each->local.port == segment.to.port &&
            (each->local.host == 0 || each->local.host == segment.to.host) &&
            each->accepted.size() < each->backlog;
   });
   const bool is_refused = found == streams_.end();
   if (!is_refused) {
-    const std::shared_ptr<Stream> listener = *found;
-    const std::shared_ptr<Stream> stream = open([] {});
-    stream->state = Stream::State::kOpen;
+    const std::shared_ptr<StreamSocket> listener = *found;
+    const std::shared_ptr<StreamSocket> stream = open([] {});
+    stream->state = StreamSocket::State::kOpen;
     stream->local = segment.to;
     stream->peer = segment.from;
     listener->accepted.push_back(stream);

@@ -36,7 +36,7 @@
 
 namespace simbench::sim {
 
-struct Stream {
+struct StreamSocket {
   enum class State { kFresh, kListening, kConnecting, kOpen, kClosed };
 
   State state = State::kFresh;
@@ -49,7 +49,7 @@ struct Stream {
   std::size_t to_credit = 0;   // read, and not told to the peer yet
   std::size_t on_the_way = 0;  // written, and not read by the peer as far as is known
   std::size_t backlog = 0;
-  std::deque<std::shared_ptr<Stream>> accepted{};  // connected, and waiting for accept()
+  std::deque<std::shared_ptr<StreamSocket>> accepted{};  // connected, and waiting for accept()
   std::function<void()> on_change{};
 };
 
@@ -64,22 +64,22 @@ class HostStreams {
 
   // Streams are known here until they are closed. `on_change` is called whenever a wait for the
   // stream should look again.
-  std::shared_ptr<Stream> open(std::function<void()> on_change);
-  int bind(Stream& stream, shim::Address address);
-  int listen(Stream& stream, std::size_t backlog);
+  std::shared_ptr<StreamSocket> open(std::function<void()> on_change);
+  int bind(StreamSocket& stream, shim::Address address);
+  int listen(StreamSocket& stream, std::size_t backlog);
   // Null if there is none.
-  std::shared_ptr<Stream> accept(Stream& listener, std::function<void()> on_change);
-  Task<int> connect(Stream& stream, shim::Address peer);
+  std::shared_ptr<StreamSocket> accept(StreamSocket& listener, std::function<void()> on_change);
+  Task<int> connect(StreamSocket& stream, shim::Address peer);
   // Takes from the front of `data` what there is room for: EAGAIN if there is none.
-  Task<int> write(Stream& stream, std::span<const std::byte> data, std::size_t& written);
+  Task<int> write(StreamSocket& stream, std::span<const std::byte> data, std::size_t& written);
   // At most `most` bytes; none at the end of the stream. EAGAIN if there is nothing yet.
-  Task<int> read(Stream& stream, std::size_t most, bool leaves_it, Bytes& data);
+  Task<int> read(StreamSocket& stream, std::size_t most, bool leaves_it, Bytes& data);
   // Ends the direction towards the peer, the other, or both (SHUT_WR, SHUT_RD, SHUT_RDWR).
-  Task<int> shut_down(Stream& stream, int how);
-  Task<void> close(std::shared_ptr<Stream> stream);
+  Task<int> shut_down(StreamSocket& stream, int how);
+  Task<void> close(std::shared_ptr<StreamSocket> stream);
 
   // As of poll().
-  static int readiness(const Stream& stream);
+  static int readiness(const StreamSocket& stream);
 
   // Receives from a peer, for ever.
   Task<void> pump(PeerId peer);
@@ -95,19 +95,19 @@ class HostStreams {
 
   std::uint32_t own_address() const;
   bool is_own(std::uint32_t address) const;
-  int bind_somewhere(Stream& stream);
-  std::shared_ptr<Stream> find(const shim::Address& local, const shim::Address& peer) const;
+  int bind_somewhere(StreamSocket& stream);
+  std::shared_ptr<StreamSocket> find(const shim::Address& local, const shim::Address& peer) const;
   Task<void> transmit(Segment segment);
-  Task<void> transmit(const Stream& stream, SegmentKind kind, Bytes data = {});
+  Task<void> transmit(const StreamSocket& stream, SegmentKind kind, Bytes data = {});
   Task<void> take(Segment segment);
   Task<void> take_opening(Segment segment);
   // Whether the stream is still connected after it.
-  static bool apply(Stream& stream, Segment& segment);
-  Task<void> give_credit(Stream& stream, std::size_t at_least);
+  static bool apply(StreamSocket& stream, Segment& segment);
+  Task<void> give_credit(StreamSocket& stream, std::size_t at_least);
 
   SimHost& host_;
   std::size_t hosts_;
-  std::vector<std::shared_ptr<Stream>> streams_;
+  std::vector<std::shared_ptr<StreamSocket>> streams_;
   std::uint16_t next_port_ = 32'768;
 };
 

@@ -4,7 +4,7 @@ namespace simbench::sim {
 namespace {
 
 // The host's clock at an instant.
-class Steered final : public clocks::SteeredClock {
+class Steered final : public clocks::AdjustedClock {
  public:
   Steered(SystemClock& clock, TrueTime at) : clock_(clock), at_(at) {}
 

@@ -101,10 +101,10 @@ class Process {
   bool is_of_stream(const ChildRequest& request) const;
   Answer open_stream(int fd);
   Task<Answer> of_stream(ChildRequest request);
-  Answer accept(Stream& listener, std::int64_t fd);
-  Task<Answer> write(Stream& stream, const Bytes& data);
-  Task<Answer> read(Stream& stream, std::int64_t how, std::int64_t most);
-  static Answer describe(Stream& stream, shim::Call call);
+  Answer accept(StreamSocket& listener, std::int64_t fd);
+  Task<Answer> write(StreamSocket& stream, const Bytes& data);
+  Task<Answer> read(StreamSocket& stream, std::int64_t how, std::int64_t most);
+  static Answer describe(StreamSocket& stream, shim::Call call);
   Task<void> close_streams();
   void close_sockets();
   std::size_t open_descriptors() const {
@@ -130,7 +130,7 @@ class Process {
   RandomStream chance_;
   WaitPoint woken_;
   std::map<int, UdpSocket> sockets_;
-  std::map<int, std::shared_ptr<Stream>> streams_;
+  std::map<int, std::shared_ptr<StreamSocket>> streams_;
   std::map<int, ProcessTimer> timers_;         // by descriptor
   std::map<int, ProcessTimer> signal_timers_;  // by the shim's number
   Child child_;

@@ -20,22 +20,23 @@ Process::Answer Process::open_stream(int fd) {
   return {};
 }
 
-Process::Answer Process::accept(Stream& listener, std::int64_t fd) {
-  if (listener.state != Stream::State::kListening) return {.error = EINVAL};
+Process::Answer Process::accept(StreamSocket& listener, std::int64_t fd) {
+  if (listener.state != StreamSocket::State::kListening) return {.error = EINVAL};
   if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
   if (fd < 0 || fd > INT32_MAX) throw BadRequest("accepted into a descriptor that is none");
   const auto place = static_cast<int>(fd);
   if (sockets_.contains(place) || streams_.contains(place) || timers_.contains(place)) {
     throw BadRequest("accepted into a descriptor that is taken");
   }
-  std::shared_ptr<Stream> stream = network_.streams().accept(listener, [this] { woken_.notify(); });
+  std::shared_ptr<StreamSocket> stream =
+      network_.streams().accept(listener, [this] { woken_.notify(); });
   if (stream == nullptr) return {.error = EAGAIN};
   Answer answer{.data = bytes_of(stream->peer)};
   streams_[place] = std::move(stream);
   return answer;
 }
 
-Task<Process::Answer> Process::write(Stream& stream, const Bytes& data) {
+Task<Process::Answer> Process::write(StreamSocket& stream, const Bytes& data) {
   read_head<shim::Address>(data);  // a stream has its peer
   std::size_t written = 0;
   const int error = co_await network_.streams().write(
@@ -43,7 +44,7 @@ Task<Process::Answer> Process::write(Stream& stream, const Bytes& data) {
   co_return Answer{.value = static_cast<std::int64_t>(written), .error = error};
 }
 
-Task<Process::Answer> Process::read(Stream& stream, std::int64_t how, std::int64_t most) {
+Task<Process::Answer> Process::read(StreamSocket& stream, std::int64_t how, std::int64_t most) {
   if (most < 0 || most > static_cast<std::int64_t>(shim::kMostData)) {
     throw BadRequest("asked for too many bytes");
   }
@@ -56,7 +57,7 @@ Task<Process::Answer> Process::read(Stream& stream, std::int64_t how, std::int64
 
 Task<Process::Answer> Process::of_stream(ChildRequest request) {
   // Kept while it is closed.
-  const std::shared_ptr<Stream> stream = streams_.at(request.head.fd);
+  const std::shared_ptr<StreamSocket> stream = streams_.at(request.head.fd);
   HostStreams& network = network_.streams();
   Answer answer;
   switch (request.head.call) {
@@ -87,7 +88,7 @@ Task<Process::Answer> Process::of_stream(ChildRequest request) {
   }
 }
 
-Process::Answer Process::describe(Stream& stream, Call call) {
+Process::Answer Process::describe(StreamSocket& stream, Call call) {
   switch (call) {
     case Call::kName:
       return {.data = bytes_of(stream.local)};
@@ -105,7 +106,7 @@ Process::Answer Process::describe(Stream& stream, Call call) {
 
 Task<void> Process::close_streams() {
   while (!streams_.empty()) {
-    const std::shared_ptr<Stream> stream = std::move(streams_.begin()->second);
+    const std::shared_ptr<StreamSocket> stream = std::move(streams_.begin()->second);
     streams_.erase(streams_.begin());
     co_await network_.streams().close(stream);
   }

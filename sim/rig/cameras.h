@@ -109,7 +109,7 @@ class Cameras {
   const scenarios::Scenario& scenario_;
   std::uint64_t seed_;
   std::uint32_t controllers_ = 0;
-  std::vector<AutoExposure> exposures_;
+  std::vector<AutoExposureLoop> exposures_;
   std::vector<CameraStream> streams_;
 };
 

@@ -23,7 +23,7 @@ timex request_of(unsigned modes) {
 }
 
 // A perfect oscillator under a kernel that is moved on when it wants to be.
-class Host : public SteeredClock {
+class Host : public AdjustedClock {
  public:
   explicit Host(std::int64_t begin_s) : begin_ns_(begin_s * kSecondNs), reading_ns_(begin_ns_) {}
 

@@ -11,34 +11,34 @@
 
 namespace {
 
-using simbench::hardware::Answer;
+using simbench::hardware::NodeAnswer;
+using simbench::hardware::NodeRequest;
 using simbench::hardware::ProtocolError;
-using simbench::hardware::Request;
 
 void require(bool condition) {
   if (!condition) std::abort();
 }
 
 void try_request(std::span<const std::byte> message) {
-  Request request;
+  NodeRequest request;
   try {
     request = simbench::hardware::parse_request(message);
   } catch (const ProtocolError&) {
     return;
   }
-  const Request again = simbench::hardware::parse_request(simbench::hardware::encode(request));
+  const NodeRequest again = simbench::hardware::parse_request(simbench::hardware::encode(request));
   require(again.id == request.id && again.verb == request.verb);
   require(again.arguments == request.arguments);
 }
 
 void try_answer(std::span<const std::byte> message) {
-  Answer answer;
+  NodeAnswer answer;
   try {
     answer = simbench::hardware::parse_answer(message);
   } catch (const ProtocolError&) {
     return;
   }
-  const Answer again = simbench::hardware::parse_answer(simbench::hardware::encode(answer));
+  const NodeAnswer again = simbench::hardware::parse_answer(simbench::hardware::encode(answer));
   require(again.id == answer.id && again.notice == answer.notice);
   require(again.error == answer.error && again.details == answer.details);
 }

@@ -19,15 +19,15 @@ using Eigen::Vector3d;
 using ::testing::HasSubstr;
 
 std::vector<StudioCamera> cameras_of(const scenarios::Scenario& scenario, std::uint64_t seed) {
-  return Studio(scenario, seed).cameras();
+  return StudioRig(scenario, seed).cameras();
 }
 
 Vector2d pixel_of(const StudioCamera& camera, const Vector3d& point) {
   return camera.intrinsics.pixel_of(camera.world_from_camera.inverse() * point);
 }
 
-TEST(Studio, CamerasStandAtSixAnglesAndThreeHeights) {
-  const Studio studio(studio_scenario(), 1);
+TEST(StudioRig, CamerasStandAtSixAnglesAndThreeHeights) {
+  const StudioRig studio(studio_scenario(), 1);
   ASSERT_EQ(studio.cameras().size(), 18U);
   for (std::size_t j = 0; j < 18; ++j) {
     SCOPED_TRACE(j);
@@ -40,9 +40,9 @@ TEST(Studio, CamerasStandAtSixAnglesAndThreeHeights) {
   }
 }
 
-TEST(Studio, CamerasOfAHostShareAnAzimuth) {
+TEST(StudioRig, CamerasOfAHostShareAnAzimuth) {
   const scenarios::Scenario scenario = studio_scenario();
-  const Studio studio(scenario, 1);
+  const StudioRig studio(scenario, 1);
   const auto azimuth = [&](std::size_t j) {
     const Vector3d position = studio.cameras()[j].world_from_camera.translation();
     return std::atan2(position.y(), position.x());
@@ -56,7 +56,7 @@ TEST(Studio, CamerasOfAHostShareAnAzimuth) {
   }
 }
 
-TEST(Studio, CamerasLookAtTheCentre) {
+TEST(StudioRig, CamerasLookAtTheCentre) {
   for (const bool portrait : {false, true}) {
     scenarios::Scenario scenario = studio_scenario();
     scenario.studio->portrait = portrait;
@@ -73,7 +73,7 @@ TEST(Studio, CamerasLookAtTheCentre) {
 }
 
 // What is above the centre is above it in the image, what is to the camera's right is to the right.
-TEST(Studio, LandscapeIsUpright) {
+TEST(StudioRig, LandscapeIsUpright) {
   scenarios::Scenario scenario = studio_scenario();
   scenario.studio->portrait = false;
   for (const StudioCamera& camera : nonempty(cameras_of(scenario, 1))) {
@@ -86,7 +86,7 @@ TEST(Studio, LandscapeIsUpright) {
   }
 }
 
-TEST(Studio, PortraitHasTheVerticalAlongItsRows) {
+TEST(StudioRig, PortraitHasTheVerticalAlongItsRows) {
   for (const StudioCamera& camera : nonempty(cameras_of(studio_scenario(), 1))) {
     const Vector2d above = pixel_of(camera, {0, 0, 1.0});
     EXPECT_NEAR(above.y(), 239.5, 1e-9);
@@ -98,7 +98,7 @@ TEST(Studio, PortraitHasTheVerticalAlongItsRows) {
 }
 
 // All of a standing person is in the image of every camera.
-TEST(Studio, PortraitSeesAPersonFromHeadToFoot) {
+TEST(StudioRig, PortraitSeesAPersonFromHeadToFoot) {
   for (const StudioCamera& camera : nonempty(cameras_of(studio_scenario(), 1))) {
     for (const double height : {0.0, 1.75}) {
       const Vector2d pixel = pixel_of(camera, {0, 0, height});
@@ -108,7 +108,7 @@ TEST(Studio, PortraitSeesAPersonFromHeadToFoot) {
   }
 }
 
-TEST(Studio, IntrinsicsAreTheProfiles) {
+TEST(StudioRig, IntrinsicsAreTheProfiles) {
   for (const StudioCamera& camera : nonempty(cameras_of(studio_scenario(), 1))) {
     EXPECT_EQ(camera.intrinsics.width, 848);
     EXPECT_EQ(camera.intrinsics.height, 480);
@@ -118,26 +118,26 @@ TEST(Studio, IntrinsicsAreTheProfiles) {
   scenarios::Scenario small = studio_scenario();
   small.cameras.streams[0].width = 424;
   small.cameras.streams[0].height = 240;
-  EXPECT_EQ(Studio(small, 1).cameras()[7].intrinsics.focal_px, 215);
-  EXPECT_EQ(Studio(small, 1).cameras()[7].intrinsics.height, 240);
+  EXPECT_EQ(StudioRig(small, 1).cameras()[7].intrinsics.focal_px, 215);
+  EXPECT_EQ(StudioRig(small, 1).cameras()[7].intrinsics.height, 240);
 }
 
-TEST(Studio, OtherStreamsDoNotMatter) {
+TEST(StudioRig, OtherStreamsDoNotMatter) {
   scenarios::Scenario scenario = studio_scenario();
   scenarios::Stream colour = scenario.cameras.streams[0];
   colour.kind = scenarios::StreamKind::kColour;
   colour.width = 1280;
   colour.height = 720;
   scenario.cameras.streams.insert(scenario.cameras.streams.begin(), colour);
-  EXPECT_EQ(Studio(scenario, 1).cameras()[0].intrinsics.width, 848);
+  EXPECT_EQ(StudioRig(scenario, 1).cameras()[0].intrinsics.width, 848);
 }
 
-TEST(Studio, FewerCamerasThanPlaces) {
+TEST(StudioRig, FewerCamerasThanPlaces) {
   scenarios::Scenario scenario = studio_scenario();
   scenario.cameras.count = 5;
-  const Studio studio(scenario, 1);
+  const StudioRig studio(scenario, 1);
   ASSERT_EQ(studio.cameras().size(), 5U);
-  const Studio all(studio_scenario(), 1);
+  const StudioRig all(studio_scenario(), 1);
   for (std::size_t j = 0; j < 5; ++j) {  // and they are those that they were, errors and all
     EXPECT_TRUE(studio.cameras()[j].believed.isApprox(all.cameras()[j].believed, 0));
   }
@@ -169,7 +169,7 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b) 
 }
 
 // 7200 draws of each: a standard deviation is within 0.8 % (one sigma), a correlation within 0.012.
-TEST(Studio, CalibrationErrorsHaveTheirSigmaAndAreIndependent) {
+TEST(StudioRig, CalibrationErrorsHaveTheirSigmaAndAreIndependent) {
   const Errors errors = calibration_errors(studio_scenario(), 400);
   const auto sigma = [](std::size_t i) { return i < 3 ? 0.010 : 0.29 * kDegree; };
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -189,7 +189,7 @@ TEST(Studio, CalibrationErrorsHaveTheirSigmaAndAreIndependent) {
   }
 }
 
-TEST(Studio, WithoutSigmaTheCalibrationIsRight) {
+TEST(StudioRig, WithoutSigmaTheCalibrationIsRight) {
   scenarios::Scenario scenario = studio_scenario();
   scenario.studio->calibration_translation_sigma_mm = 0;
   scenario.studio->calibration_rotation_sigma_deg = 0;
@@ -199,25 +199,25 @@ TEST(Studio, WithoutSigmaTheCalibrationIsRight) {
 }
 
 // Errors of one kind are the same whatever the sigma of the other: all draws are always made.
-TEST(Studio, SigmasDoNotMoveEachOthersDraws) {
+TEST(StudioRig, SigmasDoNotMoveEachOthersDraws) {
   const scenarios::Scenario both = studio_scenario();
   scenarios::Scenario moved = both;
   moved.studio->calibration_rotation_sigma_deg = 0;
   scenarios::Scenario rotated = both;
   rotated.studio->calibration_translation_sigma_mm = 0;
   for (std::size_t j = 0; j < 18; ++j) {
-    const Eigen::Isometry3d believed = Studio(both, 3).cameras()[j].believed;
-    EXPECT_TRUE(Studio(moved, 3).cameras()[j].believed.translation().isApprox(
+    const Eigen::Isometry3d believed = StudioRig(both, 3).cameras()[j].believed;
+    EXPECT_TRUE(StudioRig(moved, 3).cameras()[j].believed.translation().isApprox(
         believed.translation(), 1e-15));
     EXPECT_TRUE(
-        Studio(rotated, 3).cameras()[j].believed.linear().isApprox(believed.linear(), 1e-15));
+        StudioRig(rotated, 3).cameras()[j].believed.linear().isApprox(believed.linear(), 1e-15));
   }
 }
 
-TEST(Studio, TheSameSeedIsTheSameStudio) {
-  const Studio once(studio_scenario(), 5);
-  const Studio again(studio_scenario(), 5);
-  const Studio other(studio_scenario(), 6);
+TEST(StudioRig, TheSameSeedIsTheSameStudio) {
+  const StudioRig once(studio_scenario(), 5);
+  const StudioRig again(studio_scenario(), 5);
+  const StudioRig other(studio_scenario(), 6);
   for (std::size_t j = 0; j < 18; ++j) {
     EXPECT_TRUE(once.cameras()[j].believed.isApprox(again.cameras()[j].believed, 0));
     EXPECT_FALSE(once.cameras()[j].believed.isApprox(other.cameras()[j].believed, 1e-6));
@@ -226,10 +226,10 @@ TEST(Studio, TheSameSeedIsTheSameStudio) {
   }
 }
 
-TEST(Studio, AScenarioWithoutOneIsRefused) {
+TEST(StudioRig, AScenarioWithoutOneIsRefused) {
   scenarios::Scenario scenario = studio_scenario();
   scenario.studio.reset();
-  EXPECT_THAT([&] { const Studio studio(scenario, 1); },
+  EXPECT_THAT([&] { const StudioRig studio(scenario, 1); },
               testing::ThrowsMessage<scenarios::InputError>(
                   AllOf(HasSubstr("/studio"), HasSubstr("18cam_6host_30fps_studio"))));
 }

@@ -10,8 +10,9 @@
 namespace simbench::scenarios {
 namespace {
 
-TEST(Document, KnowsTheLineOfEveryValue) {
-  const Document document = parse_document("{\n \"a\": 1,\n \"b\": [2,\n 3\n],\n \"c/d~\":\n {}}");
+TEST(JsonDocument, KnowsTheLineOfEveryValue) {
+  const JsonDocument document =
+      parse_document("{\n \"a\": 1,\n \"b\": [2,\n 3\n],\n \"c/d~\":\n {}}");
   EXPECT_EQ(document.lines.at(""), 1U);
   EXPECT_EQ(document.lines.at("/a"), 2U);
   EXPECT_EQ(document.lines.at("/b"), 3U);
@@ -20,18 +21,19 @@ TEST(Document, KnowsTheLineOfEveryValue) {
   EXPECT_EQ(document.lines.at("/c~1d~0"), 7U);
 }
 
-TEST(Document, WholeNumbersAreIntegersHoweverWritten) {
-  const Document document = parse_document("[480, 480.0, 4.8e2, 0.5, 18446744073709551615, -0.0]");
+TEST(JsonDocument, WholeNumbersAreIntegersHoweverWritten) {
+  const JsonDocument document =
+      parse_document("[480, 480.0, 4.8e2, 0.5, 18446744073709551615, -0.0]");
   EXPECT_EQ(document.root.dump(), "[480,480,480,0.5,1.8446744073709552e+19,0]");
   EXPECT_TRUE(document.root[1].is_number_integer());
   EXPECT_TRUE(document.root[4].is_number_float());
 }
 
-TEST(Document, SkipsAByteOrderMark) {
+TEST(JsonDocument, SkipsAByteOrderMark) {
   EXPECT_EQ(parse_document("\xEF\xBB\xBF{}").root, nlohmann::json::object());
 }
 
-TEST(Document, NestingUpToTheLimit) {
+TEST(JsonDocument, NestingUpToTheLimit) {
   const std::string open(kMaximumNesting, '[');
   const std::string close(kMaximumNesting, ']');
   EXPECT_NO_THROW(parse_document(open + close));

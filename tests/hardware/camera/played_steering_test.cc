@@ -61,7 +61,7 @@ TEST(PlayedSteering, AMissingFrameHadItsLength) {
 }
 
 TEST(PlayedSteering, AnInsertedFrameIsExposedForItsLengthLessAGranule) {
-  SteeringSettings settings = steering_settings(1);
+  FrameSteering settings = steering_settings(1);
   settings.insert_stretches = 2;
   PlayedSteering steering(settings);
   shifts_of(steering, 1, 1);
@@ -88,7 +88,7 @@ TEST(PlayedSteering, AStartMovesTheNextFrameAndThoseAfterIt) {
   shifts_of(steering, 1, 1);
   EXPECT_TRUE(steering.restart(2, from_us(1234)).is_accepted());
   EXPECT_THAT(shifts_of(steering, 2, 2), ElementsAre(1.234, 1.234));
-  SteeringSettings unable = steering_settings();
+  FrameSteering unable = steering_settings();
   unable.limits.allowed = {true, true, true, false};
   PlayedSteering fixed(unable);
   EXPECT_FALSE(fixed.restart(0, from_ms(1)).is_accepted());

@@ -32,7 +32,7 @@ std::string csv(const ScratchFolder& folder) {
 
 // A camera that is started with these settings of its steering.
 struct Steered {
-  Steered(const std::string& recording, const std::optional<SteeringSettings>& how)
+  Steered(const std::string& recording, const std::optional<FrameSteering>& how)
       : driver({recorded("a", recording)}), camera(driver.open("a")) {
     CameraSettings given = settings("default", {stream("depth", 90)});
     given.steering = how;

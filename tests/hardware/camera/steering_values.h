@@ -7,8 +7,8 @@
 namespace simbench::hardware {
 
 // Frames of 4 ms, in granules of 10 us.
-inline SteeringSettings steering_settings(std::uint32_t latency_frames = 2) {
-  SteeringSettings settings;
+inline FrameSteering steering_settings(std::uint32_t latency_frames = 2) {
+  FrameSteering settings;
   settings.limits = {.frame_length = std::chrono::milliseconds(4),
                      .shortest = std::chrono::milliseconds(2),
                      .longest = std::chrono::milliseconds(20),

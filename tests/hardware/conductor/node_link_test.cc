@@ -25,7 +25,7 @@ class NodeLinkTest : public testing::Test {
   NodeLink link_to(std::uint16_t port) {
     RigHost host = rig_.rig().hosts[0];
     host.port = port;
-    return {context_, host, SecretKey(), [](const Answer&) {}};
+    return {context_, host, SecretKey(), [](const NodeAnswer&) {}};
   }
   // How many of several requests, sent before there is a stream, are answered.
   int answered(NodeLink& link, int requests) {

@@ -42,9 +42,9 @@ class BlockingConductor {
   }
 
   json ask(const std::string& verb, json arguments = json::object()) {
-    result_of(stream_->send(encode(Request{1, verb, std::move(arguments)})));
+    result_of(stream_->send(encode(NodeRequest{1, verb, std::move(arguments)})));
     for (;;) {
-      const Answer answer = parse_answer(result_of(stream_->receive(limit())).bytes);
+      const NodeAnswer answer = parse_answer(result_of(stream_->receive(limit())).bytes);
       if (!answer.notice.empty()) continue;
       if (!answer.error.empty()) throw std::runtime_error(verb + ": " + answer.error);
       return answer.details;

@@ -14,7 +14,7 @@ namespace simbench::hardware {
 // One thread, as the node's is.
 class MadeUpSteering final : public CameraSteering {
  public:
-  explicit MadeUpSteering(const SteeringSettings& settings = steering_settings())
+  explicit MadeUpSteering(const FrameSteering& settings = steering_settings())
       : requests_(settings.limits) {}
 
   const FrameControlLimits& limits() const override { return requests_.limits(); }

@@ -26,11 +26,11 @@ class NodeAlignment : public NodeHarness {
 
   static Task<void> start(TestConductor& conductor, json terms) {
     co_await conductor.connect();
-    const Answer begun = co_await conductor.ask("begin", std::move(terms));
+    const NodeAnswer begun = co_await conductor.ask("begin", std::move(terms));
     EXPECT_EQ(begun.error, "");
-    const Answer prepared = co_await conductor.ask("prepare");
+    const NodeAnswer prepared = co_await conductor.ask("prepare");
     EXPECT_EQ(prepared.error, "");
-    const Answer started = co_await conductor.ask("start");
+    const NodeAnswer started = co_await conductor.ask("start");
     EXPECT_EQ(started.error, "");
   }
 
@@ -54,7 +54,7 @@ class NodeAlignment : public NodeHarness {
     TestConductor conductor = test.conductor();
     co_await conductor.connect();
     co_await conductor.ask("begin", test.terms());
-    const Answer prepared = co_await conductor.ask("prepare");
+    const NodeAnswer prepared = co_await conductor.ask("prepare");
     EXPECT_THAT(prepared.details.at("problems"), SizeIs(3));
     const auto text = prepared.details.at("problems").at(0).at("text").get<std::string>();
     EXPECT_THAT(text, HasSubstr("cannot be steered"));
@@ -82,11 +82,11 @@ class NodeAlignment : public NodeHarness {
 TEST_F(NodeAlignment, RunsWhileTheCamerasDoAndIsOnRecord) {
   make_node(kSteered, 1);
   const auto steering = std::make_shared<MadeUpSteering>(
-      SteeringSettings{.limits = {.frame_length = from_ms(33),
-                                  .shortest = from_ms(17),
-                                  .longest = from_ms(66),
-                                  .granularity = from_us(10),
-                                  .allowed = {true, true, true, true}}});
+      FrameSteering{.limits = {.frame_length = from_ms(33),
+                               .shortest = from_ms(17),
+                               .longest = from_ms(66),
+                               .granularity = from_us(10),
+                               .allowed = {true, true, true, true}}});
   cameras_->steering = steering;
   run(capture(*this));
   EXPECT_EQ(aligned_.slaves, 1);

@@ -37,7 +37,7 @@ class NodeFailures : public NodeHarness {
  protected:
   static Task<void> begun(NodeFailures& test, TestConductor& conductor) {
     co_await conductor.connect();
-    const Answer answer = co_await conductor.ask("begin", test.terms());
+    const NodeAnswer answer = co_await conductor.ask("begin", test.terms());
     EXPECT_EQ(answer.error, "");
   }
 
@@ -46,20 +46,20 @@ class NodeFailures : public NodeHarness {
     co_await begun(test, first);
     TestConductor second = test.conductor();
     co_await second.connect();
-    const Answer refused = co_await second.ask("begin", test.terms("fedcba9876543210"));
+    const NodeAnswer refused = co_await second.ask("begin", test.terms("fedcba9876543210"));
     EXPECT_THAT(refused.error, testing::MatchesRegex("busy: conducted by me@here since "
                                                      "[0-9:]{8} \\(session 0123456789abcdef\\)"));
     for (const char* verb : {"prepare", "start", "stop"}) {
-      const Answer answer = co_await second.ask(verb);
+      const NodeAnswer answer = co_await second.ask(verb);
       EXPECT_THAT(answer.error, HasSubstr("no session over this connection")) << verb;
     }
-    const Answer other = co_await second.ask("end", in_session("fedcba9876543210"));
+    const NodeAnswer other = co_await second.ask("end", in_session("fedcba9876543210"));
     EXPECT_THAT(other.error, HasSubstr("there is none of that id here"));
-    const Answer still = co_await first.ask("prepare");
+    const NodeAnswer still = co_await first.ask("prepare");
     EXPECT_EQ(still.error, "") << "the first one's session goes on";
-    const Answer end = co_await first.ask("end", in_session(kSession));
+    const NodeAnswer end = co_await first.ask("end", in_session(kSession));
     EXPECT_EQ(end.error, "");
-    const Answer now = co_await second.ask("begin", test.terms("fedcba9876543210"));
+    const NodeAnswer now = co_await second.ask("begin", test.terms("fedcba9876543210"));
     EXPECT_EQ(now.error, "");
   }
 
@@ -80,9 +80,9 @@ class NodeFailures : public NodeHarness {
     EXPECT_THAT(test.logged(), HasSubstr("no request from its conductor for 0.4 s"));
     TestConductor next = test.conductor();
     co_await next.connect();
-    const Answer begin = co_await next.ask("begin", test.terms("fedcba9876543210"));
+    const NodeAnswer begin = co_await next.ask("begin", test.terms("fedcba9876543210"));
     EXPECT_EQ(begin.error, "");
-    const Answer late = co_await next.ask("end", in_session(kSession));
+    const NodeAnswer late = co_await next.ask("end", in_session(kSession));
     EXPECT_EQ(late.error, "") << "the session has ended";
   }
 
@@ -94,11 +94,11 @@ class NodeFailures : public NodeHarness {
     co_await test.pause(test.silence_ / 4);
     TestConductor again = test.conductor();
     co_await again.connect();
-    const Answer lost = co_await again.ask("start");
+    const NodeAnswer lost = co_await again.ask("start");
     EXPECT_THAT(lost.error, HasSubstr("name the running one"));
-    const Answer named = co_await again.ask("ping", in_session(kSession));
+    const NodeAnswer named = co_await again.ask("ping", in_session(kSession));
     EXPECT_EQ(named.error, "");
-    const Answer start = co_await again.ask("start");
+    const NodeAnswer start = co_await again.ask("start");
     EXPECT_EQ(start.error, "");
     for (int i = 0; i < 8; ++i) {
       co_await test.pause(test.silence_ / 4);
@@ -115,13 +115,13 @@ class NodeFailures : public NodeHarness {
   static Task<void> refusing_camera(NodeFailures& test) {
     TestConductor conductor = test.conductor();
     co_await begun(test, conductor);
-    const Answer prepared = co_await conductor.ask("prepare");
+    const NodeAnswer prepared = co_await conductor.ask("prepare");
     EXPECT_THAT(prepared.details.at("problems"), SizeIs(1));
     EXPECT_EQ(prepared.details.at("problems").at(0).at("camera"), "serial1");
     EXPECT_EQ(prepared.details.at("problems").at(0).at("text"), "no profile of 848x480 at 90 Hz");
     const json note = co_await conductor.notice("note");
     EXPECT_EQ(note.at("text"), "host0: camera serial1: no profile of 848x480 at 90 Hz");
-    const Answer started = co_await conductor.ask("start");
+    const NodeAnswer started = co_await conductor.ask("start");
     EXPECT_THAT(started.details.at("problems"), IsEmpty());
     EXPECT_TRUE(test.cameras_->runs("serial0"));
     EXPECT_FALSE(test.cameras_->runs("serial1"));
@@ -134,14 +134,14 @@ class NodeFailures : public NodeHarness {
     co_await conductor.ask("synchronise", role("master"));
     const json notice = co_await conductor.notice("synchronised");
     EXPECT_EQ(notice.at("error"), "no way to the master");
-    const Answer ping = co_await conductor.ask("ping");
+    const NodeAnswer ping = co_await conductor.ask("ping");
     EXPECT_EQ(ping.error, "");
   }
 
   static Task<void> itself_as_a_peer(NodeFailures& test) {
     TestConductor conductor = test.conductor();
     co_await begun(test, conductor);
-    Answer answer = co_await conductor.ask("synchronise", role("slave"));
+    NodeAnswer answer = co_await conductor.ask("synchronise", role("slave"));
     EXPECT_THAT(answer.error, HasSubstr("allowed on the rig's first host: master"));
     answer = co_await conductor.ask("synchronise", master_of("[1, 0]"));
     EXPECT_THAT(answer.error, HasSubstr("slaves: found 0, allowed: other hosts"));
@@ -155,7 +155,7 @@ class NodeFailures : public NodeHarness {
     co_await begun(test, conductor);
     co_await conductor.ask("synchronise", role("master"));
     const std::string second = "fedcba9876543210";
-    const Answer answer = co_await conductor.ask("begin", test.terms(second));
+    const NodeAnswer answer = co_await conductor.ask("begin", test.terms(second));
     EXPECT_EQ(answer.error, "");
     EXPECT_THAT(test.logged(), HasSubstr("does not end"));
     EXPECT_EQ(test.seen_.alive, 1);
@@ -172,7 +172,7 @@ class NodeFailures : public NodeHarness {
     TestConductor conductor = test.conductor();
     co_await conductor.connect();
     const auto refusal = [&](json terms) { return conductor.ask("begin", std::move(terms)); };
-    Answer answer = co_await refusal(with(test.terms(), "pipeline", "unheard_of"));
+    NodeAnswer answer = co_await refusal(with(test.terms(), "pipeline", "unheard_of"));
     EXPECT_THAT(answer.error,
                 AllOf(HasSubstr("no such pipeline"), HasSubstr(version()), HasSubstr(commit())));
     answer = co_await refusal(with(test.terms(), "session", "../../../etc/passwd"));
@@ -207,7 +207,7 @@ class NodeFailures : public NodeHarness {
       const bool closed = co_await bad.is_closed();
       EXPECT_TRUE(closed);
     }
-    const Answer ping = co_await good.ask("prepare");
+    const NodeAnswer ping = co_await good.ask("prepare");
     EXPECT_EQ(ping.error, "");
   }
 
@@ -228,11 +228,11 @@ class NodeFailures : public NodeHarness {
     test.cameras_->frame("serial2", arrived_now());
     co_await test.pause(2 * kJournalBatch);
     test.node_->stop();
-    const Answer refused = co_await conductor.ask("start");
+    const NodeAnswer refused = co_await conductor.ask("start");
     EXPECT_THAT(refused.error, HasSubstr("the node is ending"));
     json place = in_session(kSession);
     place["offset"] = 0U;
-    const Answer read = co_await conductor.ask("read", place);
+    const NodeAnswer read = co_await conductor.ask("read", place);
     EXPECT_EQ(read.error, "");
     EXPECT_THAT(read.details.value("text", ""), HasSubstr("frame,"));
     EXPECT_FALSE(read.details.value("closed", true));

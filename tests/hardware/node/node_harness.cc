@@ -168,9 +168,9 @@ Task<void> TestConductor::connect() {
                                            monotonic_now() + kNodePatience);
 }
 
-Task<Answer> TestConductor::ask(std::string verb, json arguments) {
+Task<NodeAnswer> TestConductor::ask(std::string verb, json arguments) {
   const std::uint64_t id = next_id_++;
-  Request request;
+  NodeRequest request;
   request.id = id;
   request.verb = std::move(verb);
   request.arguments = std::move(arguments);
@@ -178,7 +178,7 @@ Task<Answer> TestConductor::ask(std::string verb, json arguments) {
   co_await stream_->send(std::move(bytes));
   for (;;) {
     const StreamMessage message = co_await stream_->receive(monotonic_now() + kNodePatience);
-    Answer answer = parse_answer(message.bytes);
+    NodeAnswer answer = parse_answer(message.bytes);
     if (answer.notice.empty() && answer.id == id) co_return answer;
     notices_.push_back(std::move(answer));
   }

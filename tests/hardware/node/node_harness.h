@@ -88,7 +88,7 @@ class TestConductor {
 
   Task<void> connect();
   // The reply, errors included. Notices that come before it are kept.
-  Task<Answer> ask(std::string verb, nlohmann::json arguments = nlohmann::json::object());
+  Task<NodeAnswer> ask(std::string verb, nlohmann::json arguments = nlohmann::json::object());
   // The next notice of this kind, if it comes within 5 s.
   Task<nlohmann::json> notice(std::string kind);
   Task<void> send_bytes(Bytes bytes);
@@ -102,7 +102,7 @@ class TestConductor {
   SecretKey key_;
   std::unique_ptr<SecureStream> stream_;
   std::uint64_t next_id_ = 1;
-  std::vector<Answer> notices_;
+  std::vector<NodeAnswer> notices_;
 };
 
 class NodeHarness : public testing::Test {

@@ -32,7 +32,7 @@ class NodeSession : public NodeHarness {
  protected:
   static Task<void> expect_ok(TestConductor& conductor, std::string verb,
                               json arguments = json::object()) {
-    const Answer answer = co_await conductor.ask(verb, std::move(arguments));
+    const NodeAnswer answer = co_await conductor.ask(verb, std::move(arguments));
     EXPECT_EQ(answer.error, "") << verb;
     if (answer.details.contains("problems")) {
       EXPECT_THAT(answer.details["problems"], IsEmpty()) << verb;
@@ -55,11 +55,11 @@ class NodeSession : public NodeHarness {
     }
     co_await expect_ok(conductor, "stop");
     EXPECT_FALSE(test.cameras_->runs("serial0"));
-    const Answer read = co_await conductor.ask("read", place(kSession, 0));
+    const NodeAnswer read = co_await conductor.ask("read", place(kSession, 0));
     EXPECT_FALSE(read.details.at("closed").get<bool>());
     EXPECT_THAT(test.frames_of(test.journal()), SizeIs(15)) << "all on disk when stop has returned";
     co_await expect_ok(conductor, "end", in_session(kSession));
-    const Answer last = co_await conductor.ask("read", place(kSession, 0));
+    const NodeAnswer last = co_await conductor.ask("read", place(kSession, 0));
     EXPECT_TRUE(last.details.at("closed").get<bool>());
     const auto text = last.details.at("text").get<std::string>();
     EXPECT_EQ(last.details.at("size").get<std::size_t>(), text.size());
@@ -71,7 +71,7 @@ class NodeSession : public NodeHarness {
   static Task<void> greet(NodeSession& test) {
     TestConductor conductor = test.conductor();
     co_await conductor.connect();
-    const Answer hello = co_await conductor.ask("hello");
+    const NodeAnswer hello = co_await conductor.ask("hello");
     EXPECT_EQ(hello.details.at("version"), version());
     EXPECT_EQ(hello.details.at("commit"), commit());
     EXPECT_EQ(hello.details.at("name"), "host0");
@@ -85,7 +85,7 @@ class NodeSession : public NodeHarness {
     EXPECT_EQ(hello.details.at("cameras").at(2).at("problem"), "");
     co_await expect_ok(conductor, "ping");
     co_await expect_ok(conductor, "begin", test.terms());
-    const Answer during = co_await conductor.ask("hello");
+    const NodeAnswer during = co_await conductor.ask("hello");
     EXPECT_EQ(during.details.at("session"), kSession);
   }
 
@@ -129,7 +129,7 @@ class NodeSession : public NodeHarness {
     EXPECT_EQ(test.seen_.masters, 1);
     co_await test.pause(from_ms(20));
     EXPECT_EQ(test.seen_.alive, 1);
-    const Answer again = co_await conductor.ask("synchronise", role("master"));
+    const NodeAnswer again = co_await conductor.ask("synchronise", role("master"));
     EXPECT_THAT(again.error, HasSubstr("already started"));
     co_await expect_ok(conductor, "end", in_session(kSession));
     EXPECT_EQ(test.seen_.alive, 0) << "the service goes on until the end, and no longer";
@@ -159,11 +159,11 @@ class NodeSession : public NodeHarness {
   static Task<void> read_again(NodeSession& test, std::string session) {
     TestConductor conductor = test.conductor();
     co_await conductor.connect();
-    const Answer read = co_await conductor.ask("read", place(session, 0));
+    const NodeAnswer read = co_await conductor.ask("read", place(session, 0));
     EXPECT_EQ(read.error, "");
     EXPECT_TRUE(read.details.at("closed").get<bool>());
     EXPECT_THAT(read.details.at("text").get<std::string>(), StartsWith("adjustment,"));
-    const Answer none = co_await conductor.ask("read", place("ffffffffffffffff", 0));
+    const NodeAnswer none = co_await conductor.ask("read", place("ffffffffffffffff", 0));
     EXPECT_THAT(none.error, HasSubstr("host0 has no journal of it"));
   }
 };

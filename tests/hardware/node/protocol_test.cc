@@ -12,30 +12,30 @@ namespace {
 using nlohmann::json;
 
 TEST(Protocol, ARequestIsReadBack) {
-  const Request request = {7, "begin", {{"session", "0123456789abcdef"}, {"n", 3}}};
-  const Request read = parse_request(encode(request));
+  const NodeRequest request = {7, "begin", {{"session", "0123456789abcdef"}, {"n", 3}}};
+  const NodeRequest read = parse_request(encode(request));
   EXPECT_EQ(read.id, 7U);
   EXPECT_EQ(read.verb, "begin");
   EXPECT_EQ(read.arguments, request.arguments);
 }
 
 TEST(Protocol, AnswersAreReadBack) {
-  Answer reply;
+  NodeAnswer reply;
   reply.id = 9;
   reply.details = {{"text", "a\nb"}};
-  Answer read = parse_answer(encode(reply));
+  NodeAnswer read = parse_answer(encode(reply));
   EXPECT_EQ(read.id, 9U);
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.details, reply.details);
 
-  Answer error;
+  NodeAnswer error;
   error.id = 10;
   error.error = "busy";
   read = parse_answer(encode(error));
   EXPECT_EQ(read.id, 10U);
   EXPECT_EQ(read.error, "busy");
 
-  Answer notice;
+  NodeAnswer notice;
   notice.notice = "synchronised";
   notice.details = {{"error", nullptr}};
   read = parse_answer(encode(notice));
@@ -61,7 +61,7 @@ TEST(Protocol, WhatIsNoAnswerIsRefused) {
 }
 
 TEST(Protocol, BytesThatAreNoTextAreReplacedWhenWritten) {
-  Answer reply;
+  NodeAnswer reply;
   reply.id = 1;
   reply.details = {{"text", "\xff"}};
   EXPECT_EQ(parse_answer(encode(reply)).details["text"], "\xef\xbf\xbd");
@@ -79,7 +79,8 @@ TEST(Protocol, AnyDamageIsRefusedOrUnderstood) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  const Bytes good = encode(Request{3, "read", {{"session", "0123456789abcdef"}, {"offset", 17}}});
+  const Bytes good =
+      encode(NodeRequest{3, "read", {{"session", "0123456789abcdef"}, {"offset", 17}}});
   std::size_t refused = 0;
   for (int i = 0; i < 20'000; ++i) {
     Bytes damaged = good;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kExposureSeed = 5;
 
-AutoExposure stepping(std::size_t camera = 0) {
+AutoExposureLoop stepping(std::size_t camera = 0) {
   return {{.step_interval_exponential_ms = 200, .min_ms = 2, .max_ms = 6},
           from_ms(8),
           kExposureSeed,
@@ -20,14 +20,14 @@ AutoExposure stepping(std::size_t camera = 0) {
           at_ms(1000)};
 }
 
-TEST(AutoExposure, WithoutStepsIsConstant) {
-  AutoExposure exposure({.step_interval_exponential_ms = 0, .min_ms = 1, .max_ms = 2}, from_ms(8),
-                        kExposureSeed, 0, at_ms(0));
+TEST(AutoExposureLoop, WithoutStepsIsConstant) {
+  AutoExposureLoop exposure({.step_interval_exponential_ms = 0, .min_ms = 1, .max_ms = 2},
+                            from_ms(8), kExposureSeed, 0, at_ms(0));
   for (const double ms : {-1.0, 0.0, 1e9}) EXPECT_EQ(exposure.at(at_ms(ms)), from_ms(8)) << ms;
 }
 
-TEST(AutoExposure, BeginsWithTheConfiguredExposureAndGoesToValuesOfItsRange) {
-  AutoExposure exposure = stepping();
+TEST(AutoExposureLoop, BeginsWithTheConfiguredExposureAndGoesToValuesOfItsRange) {
+  AutoExposureLoop exposure = stepping();
   EXPECT_EQ(exposure.at(at_ms(0)), from_ms(8));
   EXPECT_EQ(exposure.at(at_ms(1000)), from_ms(8));
   int steps = 0;
@@ -49,18 +49,18 @@ TEST(AutoExposure, BeginsWithTheConfiguredExposureAndGoesToValuesOfItsRange) {
   EXPECT_NEAR(sum_ms / steps, 4, 5 * 4 / std::sqrt(12.0 * 10'000)) << "seed " << kExposureSeed;
 }
 
-TEST(AutoExposure, ValuesDoNotDependOnTheOrderOfQueries) {
-  AutoExposure forwards = stepping();
-  AutoExposure backwards = stepping();
+TEST(AutoExposureLoop, ValuesDoNotDependOnTheOrderOfQueries) {
+  AutoExposureLoop forwards = stepping();
+  AutoExposureLoop backwards = stepping();
   std::vector<Nanoseconds> seen;
   seen.reserve(500);
   for (int i = 0; i < 500; ++i) seen.push_back(forwards.at(at_ms(37.0 * i)));
   for (int i = 499; i >= 0; --i) EXPECT_EQ(backwards.at(at_ms(37.0 * i)), seen.at(i)) << i;
 }
 
-TEST(AutoExposure, EveryCameraHasItsOwnSteps) {
-  AutoExposure one = stepping(0);
-  AutoExposure other = stepping(1);
+TEST(AutoExposureLoop, EveryCameraHasItsOwnSteps) {
+  AutoExposureLoop one = stepping(0);
+  AutoExposureLoop other = stepping(1);
   EXPECT_NE(one.at(at_ms(9000)), other.at(at_ms(9000)));
 }
 

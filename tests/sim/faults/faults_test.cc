@@ -31,7 +31,7 @@ TEST(Outages, CountFromTheStartOfTheCapture) {
 }
 
 struct PathEnd final : Endpoint {
-  PathEnd(Network& net, PeerId from, PeerId to, Transport transport)
+  PathEnd(SimNetwork& net, PeerId from, PeerId to, Transport transport)
       : network(net), path(net.open(from, to, transport, *this)) {}
   void on_arrival() override {
     for (const ArrivedMessage& message : network.inbox(path)) {
@@ -42,7 +42,7 @@ struct PathEnd final : Endpoint {
   }
   void on_left(MessageId, std::size_t, TrueTime) override {}
 
-  Network& network;
+  SimNetwork& network;
   PathId path;
   MessageId next = 0;
   std::vector<MessageId> ids;
@@ -60,7 +60,7 @@ struct Talk {
     Outages outages({scenarios::LinkStops{.host = 1, .at_ms = 300, .duration_ms = 200}});
     outages.start(TrueTime{});
     const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
-    Network network(engine, parameters, 1, 3, load, outages);
+    SimNetwork network(engine, parameters, 1, 3, load, outages);
     PathEnd here(network, from, to, transport);
     PathEnd there(network, to, from, transport);
     for (int i = 0; i < 100; ++i) {
@@ -114,7 +114,7 @@ TEST(Outages, AStreamBreaksOnALinkThatStaysDeadBeyondItsRetransmissions) {
     Outages outages({scenarios::LinkStops{.host = 1, .at_ms = 0, .duration_ms = dead_ms}});
     outages.start(TrueTime{});
     const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
-    Network network(engine, parameters, 1, 2, load, outages);
+    SimNetwork network(engine, parameters, 1, 2, load, outages);
     PathEnd here(network, 0, 1, transport);
     PathEnd there(network, 1, 0, transport);
     // One while the link is dead, one long after it came back.

@@ -16,7 +16,7 @@ class NagleTest : public testing::Test {
  protected:
   class End : public Endpoint {
    public:
-    End(Network& network, const Engine& engine, PeerId from, PeerId to)
+    End(SimNetwork& network, const Engine& engine, PeerId from, PeerId to)
         : network_(network), engine_(engine) {
       path_ = network.open(from, to, Transport::kStream, *this);
     }
@@ -37,7 +37,7 @@ class NagleTest : public testing::Test {
     std::vector<double> left_ms;
 
    private:
-    Network& network_;
+    SimNetwork& network_;
     const Engine& engine_;
     PathId path_ = 0;
     MessageId next_ = 0;
@@ -67,7 +67,7 @@ class NagleTest : public testing::Test {
   Engine engine_;
   RunLoad load_;
   Outages outages_{std::vector<scenarios::Fault>{}};
-  Network network_;
+  SimNetwork network_;
   End a_;
   End b_;
 };

@@ -327,7 +327,7 @@ TEST(NetworkTest, MessagesWaitForAReceiverThatOpensLate) {
   const scenarios::Network parameters = plain_network();
   const RunLoad load(kNetworkSeed, "load", scenarios::Hosts{}, parameters);
   const Outages outages(std::vector<scenarios::Fault>{});
-  Network network(engine, parameters, kNetworkSeed, 2, load, outages);
+  SimNetwork network(engine, parameters, kNetworkSeed, 2, load, outages);
   Probe a(network, engine, 0, 1, Transport::kStream);
   a.send(1);
   engine.run();

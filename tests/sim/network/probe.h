@@ -33,7 +33,7 @@ struct Seen {
 // One end of a link: remembers what arrives, and when what it sends has left.
 class Probe : public Endpoint {
  public:
-  Probe(Network& network, const Engine& engine, PeerId from, PeerId to, Transport transport)
+  Probe(SimNetwork& network, const Engine& engine, PeerId from, PeerId to, Transport transport)
       : network_(network),
         engine_(engine),
         from_(from),
@@ -46,7 +46,7 @@ class Probe : public Endpoint {
   }
   // From this probe's host, one copy to the other end of each of these.
   void send_to_group(const std::vector<Probe*>& to, std::uint8_t number, std::size_t bytes) {
-    std::vector<Network::Recipient> recipients;
+    std::vector<SimNetwork::Recipient> recipients;
     recipients.reserve(to.size());
     for (Probe* each : to) recipients.push_back({each->path_, each->next_++});
     Bytes message(bytes);
@@ -68,7 +68,7 @@ class Probe : public Endpoint {
   std::vector<double> left_ms;
 
  private:
-  Network& network_;
+  SimNetwork& network_;
   const Engine& engine_;
   PeerId from_;
   PathId path_;
@@ -103,7 +103,7 @@ class World {
   Engine engine_;
   RunLoad load_;
   Outages outages_{std::vector<scenarios::Fault>{}};
-  Network network_;
+  SimNetwork network_;
   std::vector<std::unique_ptr<Probe>> probes_;
 };
 

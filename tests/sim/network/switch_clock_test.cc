@@ -180,7 +180,7 @@ TEST(SwitchClock, SlavesOfABoundaryClockAreAheadOfTheMasterByItsError) {
 
 // What arrived at one end of a link, with the times when it left the other's card.
 struct LinkEnd final : Endpoint {
-  LinkEnd(Network& net, PeerId from, PeerId to, Transport transport)
+  LinkEnd(SimNetwork& net, PeerId from, PeerId to, Transport transport)
       : network(net), path(net.open(from, to, transport, *this)) {}
   void send(Bytes message) { network.send(path, next++, std::move(message)); }
   void on_arrival() override {
@@ -189,7 +189,7 @@ struct LinkEnd final : Endpoint {
   }
   void on_left(MessageId, std::size_t, TrueTime at) override { passed.push_back(at); }
 
-  Network& network;
+  SimNetwork& network;
   PathId path;
   MessageId next = 0;
   std::vector<ArrivedMessage> arrived;
@@ -207,7 +207,7 @@ struct Link {
   Engine engine;
   Outages outages{std::vector<scenarios::Fault>{}};
   RunLoad load;
-  Network network;
+  SimNetwork network;
   LinkEnd ends[2];
 };
 
