@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "scenarios/input_file.h"
+#include "bags/byte_stream.h"
 
 namespace simbench::bags {
 namespace {
@@ -22,14 +22,8 @@ std::string_view to_text(BagFormat format) {
 
 std::optional<BagFormat> bag_format(const std::string& path) {
   std::array<char, 16> first{};
-  InputFile file(path);
-  std::size_t size = 0;
-  while (size < first.size()) {
-    const std::size_t more = file.read(first.data() + size, first.size() - size);
-    if (more == 0) break;
-    size += more;
-  }
-  const std::string_view bytes(first.data(), size);
+  const std::string_view bytes(first.data(),
+                               FileBytes(path).read_up_to(first.data(), first.size()));
   if (bytes.starts_with(kRosbagMagic)) return BagFormat::kRosbag;
   if (bytes.starts_with(kMcapMagic)) return BagFormat::kMcap;
   if (bytes.starts_with(kSqliteMagic)) return BagFormat::kSqlite;

@@ -180,14 +180,14 @@ class Bzip2Inflater final : public Inflater {
 
 }  // namespace
 
-bool ByteStream::read_exactly(char* to, std::size_t count) {
+std::size_t ByteStream::read_up_to(char* to, std::size_t count) {
   std::size_t done = 0;
   while (done < count) {
     const std::size_t size = read(to + done, count - done);
-    if (size == 0) return false;
+    if (size == 0) break;
     done += size;
   }
-  return true;
+  return done;
 }
 
 std::size_t FileBytes::read(char* to, std::size_t most) {

@@ -38,8 +38,10 @@ class ByteStream {
   // Returns how many bytes were skipped, fewer than `count` only at the end.
   virtual std::uint64_t skip(std::uint64_t count) = 0;
 
+  // Reads on until `count` bytes are there or the end comes. Returns how many there are.
+  std::size_t read_up_to(char* to, std::size_t count);
   // False if the end comes first; what there was is read all the same.
-  bool read_exactly(char* to, std::size_t count);
+  bool read_exactly(char* to, std::size_t count) { return read_up_to(to, count) == count; }
 };
 
 // A file. Throws FileError.

@@ -59,4 +59,10 @@ MessageHeader read_header(FieldBytes& fields) {
   return header;
 }
 
+std::string ros1_type(std::string name) {
+  const std::size_t at = name.find("/msg/");
+  if (at != std::string::npos) name.erase(at, 4);
+  return name;
+}
+
 }  // namespace simbench::bags

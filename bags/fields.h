@@ -27,6 +27,7 @@ class FieldBytes {
   FieldBytes(std::string_view bytes, Encoding encoding);
 
   std::uint8_t u8() { return static_cast<std::uint8_t>(number(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
   std::uint64_t u64() { return number(8); }
   // A text whose end is missing is what there is of it, and not ok().
@@ -51,6 +52,9 @@ struct MessageHeader {
   std::string_view frame{};
 };
 MessageHeader read_header(FieldBytes& fields);
+
+// "sensor_msgs/msg/Image" is ROS 2's name of "sensor_msgs/Image".
+std::string ros1_type(std::string name);
 
 }  // namespace simbench::bags
 

@@ -183,12 +183,8 @@ void McapReader::read_compressed(const McapChunkHead& head, std::uint64_t begin,
 bool McapReader::read_inner(ByteStream& plain) {
   McapRecord record;
   for (;;) {
-    char first = 0;
-    if (plain.read(&first, 1) == 0) return true;
-    std::array<char, 8> length{};
-    if (!plain.read_exactly(length.data(), length.size())) return false;
-    record.op = static_cast<McapOp>(static_cast<std::uint8_t>(first));
-    record.length = FieldBytes({length.data(), length.size()}, Encoding::kRos1).u64();
+    bool ended = false;
+    if (!read_mcap_record(plain, record, &ended)) return ended;
     if (record.op == McapOp::kInvalid) return false;
     if (record.op == McapOp::kMessage) {
       if (!read_message(plain, record.length)) return false;
@@ -207,8 +203,7 @@ bool McapReader::read_message(ByteStream& from, std::uint64_t length) {
   std::array<char, kMcapMessageHead> fixed{};
   if (length < fixed.size() || !from.read_exactly(fixed.data(), fixed.size())) return false;
   FieldBytes fields({fixed.data(), fixed.size()}, Encoding::kRos1);
-  const unsigned low = fields.u8();
-  const auto id = static_cast<std::uint16_t>(low | static_cast<unsigned>(fields.u8()) << 8);
+  const std::uint16_t id = fields.u16();
   fields.u32();
   const Nanoseconds log_time = log_time_of(fields.u64());
   const std::uint64_t size = length - fixed.size();
@@ -251,12 +246,7 @@ std::optional<std::uint64_t> McapReader::next_record(std::uint64_t from, std::ui
     file_.seek(from);
     const auto most =
         static_cast<std::size_t>(std::min<std::uint64_t>(limit - from, window.size()));
-    std::size_t size = 0;
-    while (size < most) {
-      const std::size_t more = file_.read(window.data() + size, most - size);
-      if (more == 0) break;
-      size += more;
-    }
+    const std::size_t size = file_.read_up_to(window.data(), most);
     if (size < kMcapRecordHead) break;
     for (std::size_t i = 0; i + kMcapRecordHead <= size; ++i) {
       // The highest bytes of a length are zero in any file that fits on a disk.
@@ -282,9 +272,8 @@ bool McapReader::is_plausible(std::uint64_t at, std::uint64_t limit) {
   if (record.op == McapOp::kMessage) {
     std::array<char, 2> id{};
     if (record.length < kMcapMessageHead || !file_.read_exactly(id.data(), id.size())) return false;
-    const unsigned number = static_cast<std::uint8_t>(id[0]) |
-                            static_cast<unsigned>(static_cast<std::uint8_t>(id[1])) << 8;
-    if (channels_.find(static_cast<std::uint16_t>(number)) == nullptr) return false;
+    FieldBytes fields({id.data(), id.size()}, Encoding::kRos1);
+    if (channels_.find(fields.u16()) == nullptr) return false;
   }
   const std::uint64_t next = content + record.length;
   if (next == limit) return true;

@@ -18,31 +18,12 @@ constexpr std::size_t kMostRecordRead = std::size_t{64} << 10;
 constexpr std::size_t kMostNames = std::size_t{32} << 20;
 constexpr std::string_view kLastMagic = "\x89MCAP0\r\n";
 
-std::uint16_t u16(FieldBytes& fields) {
-  const unsigned low = fields.u8();
-  return static_cast<std::uint16_t>(low | static_cast<unsigned>(fields.u8()) << 8);
-}
-
 // As much of a record's content as its names can be in.
 std::string record_start(ByteStream& content, std::uint64_t length) {
   std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(length, kMostRecordRead)),
                     '\0');
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const std::size_t size = content.read(bytes.data() + done, bytes.size() - done);
-    if (size == 0) break;
-    done += size;
-  }
-  bytes.resize(done);
+  bytes.resize(content.read_up_to(bytes.data(), bytes.size()));
   return bytes;
-}
-
-// "sensor_msgs/msg/Image" is ROS 2's name of "sensor_msgs/Image".
-std::string ros1_type(std::string_view name) {
-  std::string type(name);
-  const std::size_t at = type.find("/msg/");
-  if (at != std::string::npos) type.erase(at, 4);
-  return type;
 }
 
 // What a writer that knows the publisher says of it.
@@ -75,15 +56,14 @@ bool checksum_holds(FileBytes& file, std::uint64_t from, std::uint64_t to, std::
 
 }  // namespace
 
-bool read_mcap_record(ByteStream& from, McapRecord& record) {
+bool read_mcap_record(ByteStream& from, McapRecord& record, bool* ended) {
   std::array<char, kMcapRecordHead> head{};
-  if (!from.read_exactly(head.data(), head.size())) return false;
-  record.op = static_cast<McapOp>(static_cast<std::uint8_t>(head[0]));
-  std::uint64_t length = 0;
-  for (std::size_t i = kMcapRecordHead - 1; i > 0; --i) {
-    length = length << 8 | static_cast<std::uint8_t>(head.at(i));
-  }
-  record.length = length;
+  const std::size_t size = from.read_up_to(head.data(), head.size());
+  if (ended != nullptr) *ended = size == 0;
+  if (size < head.size()) return false;
+  FieldBytes fields({head.data(), size}, Encoding::kRos1);
+  record.op = static_cast<McapOp>(fields.u8());
+  record.length = fields.u64();
   return true;
 }
 
@@ -123,20 +103,20 @@ bool McapChannels::take(const McapRecord& record, ByteStream& content) {
 
 bool McapChannels::take_schema(std::string_view bytes) {
   FieldBytes fields(bytes, Encoding::kRos1);
-  const std::uint16_t id = u16(fields);
+  const std::uint16_t id = fields.u16();
   const std::string_view name = fields.text();
   if (!fields.ok()) return false;
   if (schemas_.contains(id)) return true;
   if (!has_room(name.size())) return false;
-  schemas_.emplace(id, ros1_type(name));
+  schemas_.emplace(id, ros1_type(std::string(name)));
   return true;
 }
 
 bool McapChannels::take_channel(std::string_view bytes) {
   FieldBytes fields(bytes, Encoding::kRos1);
-  const std::uint16_t id = u16(fields);
+  const std::uint16_t id = fields.u16();
   Channel channel;
-  channel.schema = u16(fields);
+  channel.schema = fields.u16();
   const std::string_view topic = fields.text();
   const std::string_view encoding = fields.text();
   if (!fields.ok()) return false;

@@ -42,8 +42,8 @@ struct McapRecord {
   McapOp op = McapOp::kInvalid;
   std::uint64_t length = 0;  // of the content
 };
-// False if the end comes first.
-bool read_mcap_record(ByteStream& from, McapRecord& record);
+// False if the end comes first; `ended`: right before the record.
+bool read_mcap_record(ByteStream& from, McapRecord& record, bool* ended = nullptr);
 
 struct McapChunkHead {
   std::uint64_t plain_size = 0;

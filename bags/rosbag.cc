@@ -306,11 +306,7 @@ std::uint64_t RosbagReading::next_chunk_after(std::uint64_t position) {
   for (std::uint64_t at = position; at < file_.size(); at += kBlock) {
     file_.seek(at);
     block.resize(kBlock + 2 * kBefore);
-    std::size_t size = 0;
-    while (const std::size_t more = file_.read(block.data() + size, block.size() - size)) {
-      size += more;
-    }
-    block.resize(size);
+    block.resize(file_.read_up_to(block.data(), block.size()));
     for (std::size_t mark = block.find(kMark); mark != std::string::npos;
          mark = block.find(kMark, mark + 1)) {
       for (std::size_t back = 4; back <= std::min<std::size_t>(mark, kBefore); ++back) {

@@ -23,6 +23,7 @@
 #include "bags/bag.h"
 #include "bags/byte_stream.h"
 #include "bags/damage_notes.h"
+#include "bags/fields.h"
 #include "scenarios/input_file.h"
 
 namespace simbench::bags {
@@ -244,9 +245,7 @@ void SqliteBagReader::read_topics() {
     if (topics_.contains(id)) continue;
     BagTopic topic;
     topic.name = column_text(rows.get(), 1);
-    topic.type = column_text(rows.get(), 2);
-    const std::size_t at = topic.type.find("/msg/");
-    if (at != std::string::npos) topic.type.erase(at, 4);
+    topic.type = ros1_type(column_text(rows.get(), 2));
     const std::string format = column_text(rows.get(), 3);
     topic.encoding = format == "cdr" ? Encoding::kCdr : Encoding::kOther;
     const auto number = static_cast<std::uint32_t>(topics_.size());
@@ -383,12 +382,7 @@ void SqliteBagReader::inflate_head(std::size_t wanted, std::uint64_t& size, std:
   BlobBytes bytes(blob_.get());
   const std::unique_ptr<ByteStream> plain = inflated(Compression::kZstd, bytes);
   if (head_.size() < wanted) head_.resize(wanted);
-  got = 0;
-  while (got < wanted) {
-    const std::size_t more = plain->read(head_.data() + got, wanted - got);
-    if (more == 0) break;
-    got += more;
-  }
+  got = plain->read_up_to(head_.data(), wanted);
 }
 
 std::optional<std::int64_t> SqliteBagReader::first_from(std::int64_t id) {

@@ -25,8 +25,7 @@ bool take_samples(unsigned count) {
     errno = EINVAL;
     return false;
   }
-  Received reply{.data = samples, .capacity = sizeof samples};
-  return ask({.call = Call::kReadCard, .a = count}, {}, {}, &reply) >= 0;
+  return ask_for({.call = Call::kReadCard, .a = count}, samples) >= 0;
 }
 
 int read_offset(ptp_sys_offset& offset) {

@@ -11,20 +11,8 @@
 namespace simbench::shim {
 namespace {
 
-timespec to_timespec(std::int64_t ns) {
-  timespec time{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
-  if (time.tv_nsec < 0) {
-    time.tv_nsec += kSecond;
-    --time.tv_sec;
-  }
-  return time;
-}
-
 std::int64_t set_clock(clockid_t clock, std::int64_t sec, std::int64_t ns) {
-  if (ns < 0 || ns >= kSecond || sec < 0) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (ns < 0 || ns >= kSecond || sec < 0) return refuse(EINVAL);
   std::int64_t known = 0;
   if (!world_clock(clock, known)) return -1;
   return ask({.call = Call::kSetClock, .a = known, .b = sec * kSecond + ns});
@@ -33,9 +21,8 @@ std::int64_t set_clock(clockid_t clock, std::int64_t sec, std::int64_t ns) {
 int adjust(clockid_t clock, timex* setting) {
   std::int64_t known = 0;
   if (!world_clock(clock, known)) return -1;
-  Received reply{.data = setting, .capacity = sizeof *setting};
   return static_cast<int>(
-      ask({.call = Call::kAdjustClock, .a = known}, {setting, sizeof *setting}, {}, &reply));
+      ask_for({.call = Call::kAdjustClock, .a = known}, *setting, {setting, sizeof *setting}));
 }
 
 }  // namespace

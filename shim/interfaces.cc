@@ -44,22 +44,28 @@ InterfaceFacts interface_at(int place) {
   return card;
 }
 
-bool find_interface(const char* name, InterfaceFacts& found) {
+namespace {
+
+template <class Matches>
+bool find_matching(Matches matches, InterfaceFacts& found) {
   for (int i = 0; i < kInterfaces; ++i) {
     found = interface_at(i);
-    if (strncmp(name, found.name, IFNAMSIZ) == 0) return true;
+    if (matches(found)) return true;
   }
   errno = ENODEV;
   return false;
 }
 
+}  // namespace
+
+bool find_interface(const char* name, InterfaceFacts& found) {
+  return find_matching(
+      [name](const InterfaceFacts& each) { return strncmp(name, each.name, IFNAMSIZ) == 0; },
+      found);
+}
+
 bool find_interface(unsigned index, InterfaceFacts& found) {
-  for (int i = 0; i < kInterfaces; ++i) {
-    found = interface_at(i);
-    if (found.index == index) return true;
-  }
-  errno = ENODEV;
-  return false;
+  return find_matching([index](const InterfaceFacts& each) { return each.index == index; }, found);
 }
 
 namespace {

@@ -43,8 +43,7 @@ __attribute__((constructor)) void join_world() {
   if (number == nullptr) return;
   world_link = atoi(number);
   asking_thread = pthread_self();
-  Received reply{.data = &own_identity, .capacity = sizeof own_identity};
-  if (ask({.call = Call::kHello}, {}, {}, &reply) < 0) lose();
+  if (ask_for({.call = Call::kHello}, own_identity) < 0) lose();
   if (own_identity.only_clock != 0) open_own_clock();
 }
 
@@ -79,9 +78,7 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
   received.size = answer.size;
   if ((answer.error & kHasExpirations) != 0) make_signals();
   const int error = answer.error & ~kHasExpirations;
-  if (error == 0) return answer.value;
-  errno = error;
-  return -1;
+  return error == 0 ? answer.value : refuse(error);
 }
 
 int refuse(int error) {

@@ -55,6 +55,13 @@ const Identity& identity();
 // Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
 std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Received* reply = nullptr);
 
+// The same, where the reply is one value.
+template <class Value>
+std::int64_t ask_for(const Request& request, Value& value, Sent head = {}) {
+  Received reply{.data = &value, .capacity = sizeof value};
+  return ask(request, head, {}, &reply);
+}
+
 // Makes the signals of the timers that have expired, which the world tells with a reply.
 void make_signals();
 // How many of these signals have run a handler, so far, and of these how many without SA_RESTART.
@@ -114,8 +121,11 @@ bool is_blocking(int fd);
 bool is_time(const timespec& time);
 // Times beyond 292 years are never.
 std::int64_t nanoseconds(const timespec& time);
-TimerSetting to_setting(const itimerspec& setting);
-itimerspec from_setting(const TimerSetting& setting);
+timespec to_timespec(std::int64_t ns);
+
+// Timers of the world, which the request names. They return -1 with errno; `before` may be null.
+int set_world_timer(const Request& request, const itimerspec& setting, itimerspec* before);
+int query_world_timer(const Request& request, itimerspec& setting);
 
 // What a blocking read of a descriptor of the world waits for; a timeout below 0: for ever. False
 // with errno: EAGAIN at the timeout, EINTR after a handler, unless that says SA_RESTART.

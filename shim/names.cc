@@ -204,10 +204,7 @@ SIMBENCH_CALL int gethostname(char* name, std::size_t size) {
   if (!is_simulated()) return SIMBENCH_REAL(gethostname)(name, size);
   char own[kMostName];
   write_own_name(own, sizeof own);
-  if (size <= strlen(own)) {
-    errno = ENAMETOOLONG;
-    return -1;
-  }
+  if (size <= strlen(own)) return refuse(ENAMETOOLONG);
   memcpy(name, own, strlen(own) + 1);
   return 0;
 }

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "shim/interfaces.h"
+#include "shim/sockets.h"
 
 namespace simbench::shim {
 namespace {
@@ -156,10 +157,7 @@ void reply(const unsigned char* bytes, std::size_t size, NetlinkAnswer& answer) 
 
 int open_netlink(int type, int protocol) {
   NetlinkSocket* place = take_place();
-  if (protocol != NETLINK_ROUTE || place == nullptr) {
-    errno = EPROTONOSUPPORT;
-    return -1;
-  }
+  if (protocol != NETLINK_ROUTE || place == nullptr) return refuse(EPROTONOSUPPORT);
   const int fd =
       open_descriptor(Kind::kNetlink, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
@@ -172,22 +170,14 @@ int open_netlink(int type, int protocol) {
 
 ssize_t netlink_send(int fd, const msghdr& message) {
   alignas(NLMSG_ALIGNTO) unsigned char bytes[512] = {};
-  std::size_t size = 0;
-  for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
-    const iovec& piece = message.msg_iov[i];
-    if (piece.iov_len >= sizeof bytes - size) {
-      errno = EMSGSIZE;
-      return -1;
-    }
-    memcpy(bytes + size, piece.iov_base, piece.iov_len);
-    size += piece.iov_len;
-  }
+  const ssize_t size = gather(message, bytes, sizeof bytes - 1);  // names end with a zero
+  if (size < 0) return -1;
   NetlinkAnswer& answer = *answer_of(fd);
   const bool was_empty = answer.is_empty();
-  reply(bytes, size, answer);
+  reply(bytes, static_cast<std::size_t>(size), answer);
   const std::uint64_t one = 1;
   if (was_empty && !answer.is_empty()) syscall(SYS_write, fd, &one, sizeof one);
-  return static_cast<ssize_t>(size);
+  return size;
 }
 
 ssize_t netlink_receive(int fd, msghdr& message, int flags) {
@@ -196,17 +186,9 @@ ssize_t netlink_receive(int fd, msghdr& message, int flags) {
     // Nothing will ever come.
     pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
     if ((flags & MSG_DONTWAIT) == 0 && is_blocking(fd)) poll(&interest, 1, -1);
-    errno = EAGAIN;
-    return -1;
+    return refuse(EAGAIN);
   }
-  std::size_t copied = 0;
-  for (std::size_t i = 0; i < message.msg_iovlen && copied < answer.size(); ++i) {
-    const iovec& piece = message.msg_iov[i];
-    const std::size_t left = answer.size() - copied;
-    const std::size_t part = piece.iov_len < left ? piece.iov_len : left;
-    memcpy(piece.iov_base, answer.bytes() + copied, part);
-    copied += part;
-  }
+  const std::size_t copied = scatter(answer.bytes(), answer.size(), message);
   message.msg_flags = copied < answer.size() ? MSG_TRUNC : 0;
   message.msg_controllen = 0;
   sockaddr_nl kernel{};

@@ -21,8 +21,6 @@ std::int64_t machine_time(clockid_t clock) {
   return nanoseconds(now);
 }
 
-timespec as_timespec(std::int64_t ns) { return {.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond}; }
-
 // CLOCK_REALTIME minus CLOCK_MONOTONIC, of the closest of some readings.
 std::int64_t machine_offset() {
   constexpr int kTries = 4;
@@ -42,7 +40,7 @@ std::int64_t machine_offset() {
 // A stamp of zero is none.
 void convert(timespec& stamp) {
   if (stamp.tv_sec == 0 && stamp.tv_nsec == 0) return;
-  stamp = as_timespec(own_time_at(stamp));
+  stamp = to_timespec(own_time_at(stamp));
 }
 
 void convert(timeval& stamp) {
@@ -91,16 +89,16 @@ int sleep_until_own_time(std::int64_t reading) {
   for (;;) {
     const std::int64_t left = reading - own_time();
     if (left <= 0) return 0;
-    const timespec part = as_timespec(left < kLongest ? left : kLongest);
+    const timespec part = to_timespec(left < kLongest ? left : kLongest);
     if (nanosleep(&part, nullptr) < 0) return errno;
   }
 }
 
 timespec machine_time_of(const timespec& reading) {
   const std::int64_t left = nanoseconds(reading) - own_time();
-  // Of a timer, 0 would disarm it.
+  // A timer that is set to 0 would be disarmed.
   const std::int64_t at = machine_time(CLOCK_MONOTONIC) + left;
-  return as_timespec(at > 1 ? at : 1);
+  return to_timespec(at > 1 ? at : 1);
 }
 
 void convert_stamps(msghdr& message) {

@@ -28,12 +28,7 @@ char shell[] = "/bin/false";
 char no_text[] = "";
 char* no_members[] = {nullptr};
 
-char user_name[kMostUserName];
-passwd user;
-char group_name[kMostUserName];
-group own_group;
-
-void fill_user(passwd& result, char* name) {
+void fill_entry(passwd& result, char* name) {
   result = {};
   result.pw_name = name;
   result.pw_passwd = no_password;
@@ -42,27 +37,39 @@ void fill_user(passwd& result, char* name) {
   result.pw_shell = shell;
 }
 
-void fill_group(group& result, char* name) {
+void fill_entry(group& result, char* name) {
   result = {};
   result.gr_name = name;
   result.gr_passwd = no_password;
   result.gr_mem = no_members;
 }
 
-bool copy(const char* name, char* room, std::size_t size) {
+// As getpwnam_r() and getgrnam_r().
+template <class Entry>
+int find_named(const char* name, Entry* result, char* room, std::size_t size, Entry** found) {
+  *found = nullptr;
   const std::size_t length = strlen(name);
-  if (length >= size) return false;
+  if (length >= size) return ERANGE;
   memcpy(room, name, length + 1);
-  return true;
+  fill_entry(*result, room);
+  *found = result;
+  return 0;
+}
+
+// As getpwnam() and getgrnam(): an entry of the library's own.
+template <class Entry>
+Entry* find_named(const char* name) {
+  static char room[kMostUserName];
+  static Entry entry;
+  Entry* found = nullptr;
+  find_named(name, &entry, room, sizeof room, &found);
+  return found;
 }
 
 }  // namespace
 
 SIMBENCH_CALL passwd* getpwnam(const char* name) {
-  if (!has_world()) return SIMBENCH_REAL(getpwnam)(name);
-  if (!copy(name, user_name, sizeof user_name)) return nullptr;
-  fill_user(user, user_name);
-  return &user;
+  return has_world() ? find_named<passwd>(name) : SIMBENCH_REAL(getpwnam)(name);
 }
 
 SIMBENCH_CALL passwd* getpwuid(uid_t id) {
@@ -73,11 +80,7 @@ SIMBENCH_CALL passwd* getpwuid(uid_t id) {
 SIMBENCH_CALL int getpwnam_r(const char* name, passwd* result, char* room, std::size_t size,
                              passwd** found) {
   if (!has_world()) return SIMBENCH_REAL(getpwnam_r)(name, result, room, size, found);
-  *found = nullptr;
-  if (!copy(name, room, size)) return ERANGE;
-  fill_user(*result, room);
-  *found = result;
-  return 0;
+  return find_named(name, result, room, size, found);
 }
 
 SIMBENCH_CALL int getpwuid_r(uid_t id, passwd* result, char* room, std::size_t size,
@@ -88,10 +91,7 @@ SIMBENCH_CALL int getpwuid_r(uid_t id, passwd* result, char* room, std::size_t s
 }
 
 SIMBENCH_CALL group* getgrnam(const char* name) {
-  if (!has_world()) return SIMBENCH_REAL(getgrnam)(name);
-  if (!copy(name, group_name, sizeof group_name)) return nullptr;
-  fill_group(own_group, group_name);
-  return &own_group;
+  return has_world() ? find_named<group>(name) : SIMBENCH_REAL(getgrnam)(name);
 }
 
 SIMBENCH_CALL group* getgrgid(gid_t id) {
@@ -102,11 +102,7 @@ SIMBENCH_CALL group* getgrgid(gid_t id) {
 SIMBENCH_CALL int getgrnam_r(const char* name, group* result, char* room, std::size_t size,
                              group** found) {
   if (!has_world()) return SIMBENCH_REAL(getgrnam_r)(name, result, room, size, found);
-  *found = nullptr;
-  if (!copy(name, room, size)) return ERANGE;
-  fill_group(*result, room);
-  *found = result;
-  return 0;
+  return find_named(name, result, room, size, found);
 }
 
 SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size, group** found) {

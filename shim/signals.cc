@@ -72,27 +72,18 @@ void make_signal(int number, int times) {
 }
 
 int set_timer(int number, bool is_absolute, const itimerspec& setting, itimerspec* before) {
-  if (!is_time(setting.it_value) || !is_time(setting.it_interval)) {
-    errno = EINVAL;
-    return -1;
-  }
-  const TimerSetting wanted = to_setting(setting);
-  TimerSetting old{};
-  Received reply{.data = &old, .capacity = sizeof old};
-  const Request request{.call = Call::kSetSignalTimer,
-                        .fd = -1 - number,
-                        .a = is_absolute ? 1 : 0,
-                        .b = timers[number].clock};
-  if (ask(request, {&wanted, sizeof wanted}, {}, &reply) < 0) return -1;
-  if (before != nullptr) *before = from_setting(old);
-  return 0;
+  if (!is_time(setting.it_value) || !is_time(setting.it_interval)) return refuse(EINVAL);
+  return set_world_timer({.call = Call::kSetSignalTimer,
+                          .fd = -1 - number,
+                          .a = is_absolute ? 1 : 0,
+                          .b = timers[number].clock},
+                         setting, before);
 }
 
 itimerspec query_timer(int number) {
-  TimerSetting now{};
-  Received reply{.data = &now, .capacity = sizeof now};
-  ask({.call = Call::kQuerySignalTimer, .fd = -1 - number}, {}, {}, &reply);
-  return from_setting(now);
+  itimerspec setting{};
+  query_world_timer({.call = Call::kQuerySignalTimer, .fd = -1 - number}, setting);
+  return setting;
 }
 
 timespec timespec_of(const timeval& time) { return {time.tv_sec, time.tv_usec * 1000}; }
@@ -216,15 +207,9 @@ SIMBENCH_CALL int timer_create(clockid_t clock, sigevent* event, timer_t* id) {
     if (result == 0 && machine != clock) note_own_timer(*id);
     return result;
   }
-  if (!is_clock_of_timers(clock)) {
-    errno = ENOTSUP;
-    return -1;
-  }
+  if (!is_clock_of_timers(clock)) return refuse(ENOTSUP);
   const int signal = event != nullptr ? signal_of(*event) : SIGALRM;
-  if (signal < 0) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (signal < 0) return refuse(EINVAL);
   for (int number = kIntervalTimer + 1; number < kMostTimers; ++number) {
     if (timers[number].exists) continue;
     sigval value{.sival_int = number};
@@ -234,8 +219,7 @@ SIMBENCH_CALL int timer_create(clockid_t clock, sigevent* event, timer_t* id) {
     *id = &timers[number];
     return 0;
   }
-  errno = EAGAIN;
-  return -1;
+  return refuse(EAGAIN);
 }
 
 SIMBENCH_CALL int timer_settime(timer_t id, int flags, const itimerspec* setting,
@@ -285,10 +269,7 @@ SIMBENCH_CALL int sigsuspend(const sigset_t* mask) {
 // A signal that is awaited is blocked, so it stays pending until it is taken here.
 SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
   if (!is_simulated()) return SIMBENCH_REAL(sigtimedwait)(set, info, timeout);
-  if (timeout != nullptr && !is_time(*timeout)) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (timeout != nullptr && !is_time(*timeout)) return refuse(EINVAL);
   Request wait{.call = Call::kWait, .a = static_cast<std::int64_t>(Deadline::kNever)};
   if (timeout != nullptr) {
     timespec now{};
@@ -301,10 +282,7 @@ SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const times
     const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
     if (taken > 0 || errno != EAGAIN) return static_cast<int>(taken);
     const std::uint64_t before = handled.all;
-    if (ask(wait) >= 0) {
-      errno = EAGAIN;
-      return -1;
-    }
+    if (ask(wait) >= 0) return refuse(EAGAIN);
     if (handled.all != before) return -1;
   }
 }
@@ -329,8 +307,7 @@ SIMBENCH_CALL int sigwait(const sigset_t* set, int* signal) {
 SIMBENCH_CALL int kill(pid_t process, int signal) {
   if (!is_simulated()) return SIMBENCH_REAL(kill)(process, signal);
   if (process == 0 || process == identity().process) return raise(signal);
-  errno = ESRCH;
-  return -1;
+  return refuse(ESRCH);
 }
 
 SIMBENCH_CALL int signalfd(int fd, const sigset_t* mask, int flags) {

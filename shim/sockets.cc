@@ -44,6 +44,29 @@ void write_address(const Address& address, sockaddr* name, socklen_t* size) {
   *size = sizeof in;
 }
 
+ssize_t gather(const msghdr& message, unsigned char* to, std::size_t room) {
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
+    const iovec& piece = message.msg_iov[i];
+    if (piece.iov_len > room - size) return refuse(EMSGSIZE);
+    memcpy(to + size, piece.iov_base, piece.iov_len);
+    size += piece.iov_len;
+  }
+  return static_cast<ssize_t>(size);
+}
+
+std::size_t scatter(const unsigned char* from, std::size_t size, const msghdr& message) {
+  std::size_t copied = 0;
+  for (std::size_t i = 0; i < message.msg_iovlen && copied < size; ++i) {
+    const iovec& piece = message.msg_iov[i];
+    const std::size_t left = size - copied;
+    const std::size_t part = piece.iov_len < left ? piece.iov_len : left;
+    memcpy(piece.iov_base, from + copied, part);
+    copied += part;
+  }
+  return copied;
+}
+
 namespace {
 
 // The message of a transmit stamp is the packet as it left: Ethernet, IPv4, UDP, payload.
@@ -130,10 +153,7 @@ class Control {
   std::size_t room_;
 };
 
-timespec stamp_of(std::int64_t ns) {
-  if (ns == kNoStamp) return {};
-  return {.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
-}
+timespec stamp_of(std::int64_t ns) { return ns == kNoStamp ? timespec{} : to_timespec(ns); }
 
 // The stamps as SO_TIMESTAMPING has them: those that it was asked to report.
 void add_stamps(const SocketState& state, bool is_error, Control& control) {
@@ -186,14 +206,7 @@ void add_destination(bool is_error, Control& control) {
 ssize_t receive_message(int fd, msghdr& message, int flags) {
   if (!take_datagram(fd, flags)) return -1;
   const unsigned char* bytes = datagram.bytes + datagram.begin;
-  std::size_t copied = 0;
-  for (std::size_t i = 0; i < message.msg_iovlen && copied < datagram.size; ++i) {
-    const iovec& piece = message.msg_iov[i];
-    const std::size_t left = datagram.size - copied;
-    const std::size_t part = piece.iov_len < left ? piece.iov_len : left;
-    memcpy(piece.iov_base, bytes + copied, part);
-    copied += part;
-  }
+  const std::size_t copied = scatter(bytes, datagram.size, message);
   const bool is_error = (flags & MSG_ERRQUEUE) != 0;
   message.msg_flags = (copied < datagram.size ? MSG_TRUNC : 0) | (is_error ? MSG_ERRQUEUE : 0);
   write_address(is_error ? datagram.arrival.to : datagram.arrival.from,
@@ -228,27 +241,16 @@ ssize_t send_message(int fd, const msghdr& message) {
       !read_address(static_cast<const sockaddr*>(message.msg_name), message.msg_namelen, to)) {
     return -1;
   }
-  std::size_t size = 0;
-  for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
-    const iovec& piece = message.msg_iov[i];
-    if (piece.iov_len > sizeof payload - size) {
-      errno = EMSGSIZE;
-      return -1;
-    }
-    memcpy(payload + size, piece.iov_base, piece.iov_len);
-    size += piece.iov_len;
-  }
-  const std::int64_t stamps = stamps_asked_for(fd, message);
-  if (ask({.call = Call::kSend, .fd = fd, .a = stamps}, {&to, sizeof to}, {payload, size}) < 0) {
-    return -1;
-  }
-  return static_cast<ssize_t>(size);
+  const ssize_t size = gather(message, payload, sizeof payload);
+  if (size < 0) return -1;
+  const Sent content{payload, static_cast<std::size_t>(size)};
+  const Request request{.call = Call::kSend, .fd = fd, .a = stamps_asked_for(fd, message)};
+  return ask(request, {&to, sizeof to}, content) < 0 ? -1 : size;
 }
 
 int name_of(int fd, Call call, sockaddr* name, socklen_t* size) {
   Address address{};
-  Received reply{.data = &address, .capacity = sizeof address};
-  if (ask({.call = call, .fd = fd}, {}, {}, &reply) < 0) return -1;
+  if (ask_for({.call = call, .fd = fd}, address) < 0) return -1;
   write_address(address, name, size);
   return 0;
 }
@@ -260,16 +262,13 @@ bool is_real(int fd) {
 
 }  // namespace
 
-void copy_socket_state(int from, int to) { state_of(to) = state_of(from); }
-
 SIMBENCH_CALL int socket(int domain, int type, int protocol) {
   if (!is_simulated()) return SIMBENCH_REAL(socket)(domain, type, protocol);
   if (domain == AF_UNIX) return local_socket(domain, type, protocol);
   if (domain == AF_NETLINK) return open_netlink(type, protocol);
   const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (domain != AF_INET || (kind != SOCK_DGRAM && kind != SOCK_STREAM)) {
-    errno = domain == AF_INET ? EPROTONOSUPPORT : EAFNOSUPPORT;
-    return -1;
+    return refuse(domain == AF_INET ? EPROTONOSUPPORT : EAFNOSUPPORT);
   }
   const int fd = open_descriptor(kind == SOCK_STREAM ? Kind::kStream : Kind::kSocket,
                                  (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);

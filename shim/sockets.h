@@ -42,6 +42,12 @@ bool read_address(const sockaddr* name, socklen_t size, Address& address);
 // Cut to *size, which becomes the whole size.
 void write_address(const Address& address, sockaddr* name, socklen_t* size);
 
+// Copies the pieces of a message that is sent, one after the other. Returns their size, or -1 with
+// EMSGSIZE if there is no room for them.
+ssize_t gather(const msghdr& message, unsigned char* to, std::size_t room);
+// Fills the pieces of a message that is received. Returns how many bytes they took.
+std::size_t scatter(const unsigned char* from, std::size_t size, const msghdr& message);
+
 }  // namespace simbench::shim
 
 #endif  // SIMBENCH_SHIM_SOCKETS_H_

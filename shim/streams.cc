@@ -20,7 +20,7 @@ bool waits(int fd, short events, int flags) {
   if (errno != EAGAIN || (flags & MSG_DONTWAIT) != 0 || !is_blocking(fd)) return false;
   pollfd interest{.fd = fd, .events = events, .revents = 0};
   const std::int64_t ns = (events & POLLIN) != 0 ? state_of(fd).timeout_ns : -1;
-  const timespec timeout{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
+  const timespec timeout = to_timespec(ns);
   if (ppoll(&interest, 1, ns < 0 ? nullptr : &timeout, nullptr) > 0) return true;
   errno = EAGAIN;
   return false;
@@ -68,8 +68,7 @@ int stream_connect(int fd, const Address& address) {
   if (poll(&interest, 1, -1) < 0) return -1;
   const std::int64_t error = ask({.call = Call::kSocketError, .fd = fd});
   if (error == 0) return 0;
-  errno = static_cast<int>(error);
-  return -1;
+  return refuse(static_cast<int>(error));
 }
 
 int stream_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
@@ -78,8 +77,7 @@ int stream_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
     const int accepted =
         open_descriptor(Kind::kStream, (flags & SOCK_NONBLOCK) != 0, (flags & SOCK_CLOEXEC) != 0);
     if (accepted < 0) return -1;
-    Received reply{.data = &peer, .capacity = sizeof peer};
-    if (ask({.call = Call::kAccept, .fd = fd, .a = number_of(accepted)}, {}, {}, &reply) >= 0) {
+    if (ask_for({.call = Call::kAccept, .fd = fd, .a = number_of(accepted)}, peer) >= 0) {
       state_of(accepted) = {.type = SOCK_STREAM};
       write_address(peer, name, size);
       return accepted;
@@ -137,10 +135,7 @@ SIMBENCH_CALL int listen(int fd, int backlog) {
 SIMBENCH_CALL int accept4(int fd, sockaddr* name, socklen_t* size, int flags) {
   if (is_stream(fd)) return stream_accept(fd, name, size, flags);
   if (is_local(fd)) return local_accept(fd, name, size, flags);
-  if (is_socket(fd)) {
-    errno = EOPNOTSUPP;
-    return -1;
-  }
+  if (is_socket(fd)) return refuse(EOPNOTSUPP);
   return SIMBENCH_REAL(accept4)(fd, name, size, flags);
 }
 

@@ -87,8 +87,7 @@ std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Receiv
     if (left_ns != nullptr) *left_ns = left;
     if (until.kind == Deadline::kAfter) until.ns = left;
     if (reason == EINTR && handled_signals().all == before) continue;
-    errno = reason;
-    return -1;
+    return refuse(reason);
   }
 }
 
@@ -96,14 +95,8 @@ std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Receiv
 int wait(pollfd* interests, nfds_t count, Until until, const sigset_t* signals = nullptr,
          std::int64_t* left_ns = nullptr) {
   const Mask mask(signals);
-  if (mask.has_handled()) {
-    errno = EINTR;
-    return -1;
-  }
-  if (count > kMostInterests) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (mask.has_handled()) return refuse(EINTR);
+  if (count > kMostInterests) return refuse(EINVAL);
   pollfd real[kMostInterests];
   Interest simulated[kMostInterests];
   std::size_t asked = 0;
@@ -146,19 +139,25 @@ bool is_time(const timespec& time) {
   return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < kSecond;
 }
 
+timespec to_timespec(std::int64_t ns) {
+  timespec time{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
+  if (time.tv_nsec < 0) {
+    time.tv_nsec += kSecond;
+    --time.tv_sec;
+  }
+  return time;
+}
+
 std::int64_t nanoseconds(const timespec& time) {
   return time.tv_sec >= INT64_MAX / kSecond ? INT64_MAX : time.tv_sec * kSecond + time.tv_nsec;
 }
 
 SIMBENCH_CALL int nanosleep(const timespec* interval, timespec* left) {
   if (!is_simulated()) return SIMBENCH_REAL(nanosleep)(interval, left);
-  if (!is_time(*interval)) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (!is_time(*interval)) return refuse(EINVAL);
   std::int64_t left_ns = 0;
   const int result = sleep_until(after(interval), &left_ns);
-  if (left != nullptr && result < 0) *left = {left_ns / kSecond, left_ns % kSecond};
+  if (left != nullptr && result < 0) *left = to_timespec(left_ns);
   return result;
 }
 
@@ -253,10 +252,7 @@ SIMBENCH_CALL int select(int count, fd_set* readers, fd_set* writers, fd_set* ex
   }
   if (timeout == nullptr) return pselect(count, readers, writers, exceptions, nullptr, nullptr);
   const timespec interval{.tv_sec = timeout->tv_sec, .tv_nsec = timeout->tv_usec * 1000};
-  if (timeout->tv_sec < 0 || timeout->tv_usec < 0) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (timeout->tv_sec < 0 || timeout->tv_usec < 0) return refuse(EINVAL);
   timespec begin{};
   timespec end{};
   clock_gettime(CLOCK_MONOTONIC, &begin);
@@ -307,8 +303,7 @@ SIMBENCH_CALL int epoll_ctl(int epoll, int operation, int fd, epoll_event* event
   if (!is_simulated()) return SIMBENCH_REAL(epoll_ctl)(epoll, operation, fd, event);
   Watched* found = find_watched(epoll, fd);
   if ((operation == EPOLL_CTL_ADD) == (found != nullptr)) {
-    errno = found != nullptr ? EEXIST : ENOENT;
-    return -1;
+    return refuse(found != nullptr ? EEXIST : ENOENT);
   }
   if (operation == EPOLL_CTL_DEL) {
     *found = {};
@@ -318,10 +313,7 @@ SIMBENCH_CALL int epoll_ctl(int epoll, int operation, int fd, epoll_event* event
     give_up("epoll with EPOLLET or EPOLLONESHOT");
   }
   if (found == nullptr) found = find_watched(-1, -1);
-  if (found == nullptr) {
-    errno = ENOSPC;
-    return -1;
-  }
+  if (found == nullptr) return refuse(ENOSPC);
   *found = {.epoll = epoll, .fd = fd, .event = *event};
   return 0;
 }
@@ -356,17 +348,27 @@ bool is_setting(const itimerspec& setting) {
   return is_time(setting.it_value) && is_time(setting.it_interval);
 }
 
-}  // namespace
-
-TimerSetting to_setting(const itimerspec& setting) {
-  return {.left = nanoseconds(setting.it_value), .interval = nanoseconds(setting.it_interval)};
+itimerspec from_setting(const TimerSetting& setting) {
+  return {.it_interval = to_timespec(setting.interval), .it_value = to_timespec(setting.left)};
 }
 
-itimerspec from_setting(const TimerSetting& setting) {
-  itimerspec result{};
-  result.it_value = {setting.left / kSecond, setting.left % kSecond};
-  result.it_interval = {setting.interval / kSecond, setting.interval % kSecond};
-  return result;
+}  // namespace
+
+int set_world_timer(const Request& request, const itimerspec& setting, itimerspec* before) {
+  if (!is_setting(setting)) return refuse(EINVAL);
+  const TimerSetting wanted{.left = nanoseconds(setting.it_value),
+                            .interval = nanoseconds(setting.it_interval)};
+  TimerSetting old{};
+  if (ask_for(request, old, {&wanted, sizeof wanted}) < 0) return -1;
+  if (before != nullptr) *before = from_setting(old);
+  return 0;
+}
+
+int query_world_timer(const Request& request, itimerspec& setting) {
+  TimerSetting now{};
+  if (ask_for(request, now) < 0) return -1;
+  setting = from_setting(now);
+  return 0;
 }
 
 bool wait_for_input(int fd, std::int64_t timeout_ns) {
@@ -385,10 +387,7 @@ bool wait_for_input(int fd, std::int64_t timeout_ns) {
 }
 
 std::int64_t read_timer(int fd, void* data, std::size_t size) {
-  if (size < sizeof(std::uint64_t)) {
-    errno = EINVAL;
-    return -1;
-  }
+  if (size < sizeof(std::uint64_t)) return refuse(EINVAL);
   for (;;) {
     const std::int64_t expirations = ask({.call = Call::kReadTimer, .fd = fd});
     if (expirations >= 0) {
@@ -425,29 +424,14 @@ SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
     return SIMBENCH_REAL(timerfd_settime)(fd, flags & TFD_TIMER_ABSTIME, &machine, before);
   }
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_settime)(fd, flags, setting, before);
-  if (!is_setting(*setting)) {
-    errno = EINVAL;
-    return -1;
-  }
-  const TimerSetting wanted = to_setting(*setting);
-  TimerSetting old{};
-  Received reply{.data = &old, .capacity = sizeof old};
   const bool is_absolute = (flags & TFD_TIMER_ABSTIME) != 0;
-  if (ask({.call = Call::kSetTimer, .fd = fd, .a = is_absolute ? 1 : 0}, {&wanted, sizeof wanted},
-          {}, &reply) < 0) {
-    return -1;
-  }
-  if (before != nullptr) *before = from_setting(old);
-  return 0;
+  return set_world_timer({.call = Call::kSetTimer, .fd = fd, .a = is_absolute ? 1 : 0}, *setting,
+                         before);
 }
 
 SIMBENCH_CALL int timerfd_gettime(int fd, itimerspec* setting) {
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_gettime)(fd, setting);
-  TimerSetting now{};
-  Received reply{.data = &now, .capacity = sizeof now};
-  if (ask({.call = Call::kQueryTimer, .fd = fd}, {}, {}, &reply) < 0) return -1;
-  *setting = from_setting(now);
-  return 0;
+  return query_world_timer({.call = Call::kQueryTimer, .fd = fd}, *setting);
 }
 
 }  // namespace simbench::shim

@@ -14,7 +14,7 @@
 
 #include "evaluation/replay/replay.h"
 #include "recording/rs_csv.h"
-#include "tests/data/test_data.h"
+#include "tests/data/ibl_recordings.h"
 #include "tests/read_fault.h"
 #include "tests/scratch_folder.h"
 
@@ -22,9 +22,6 @@ namespace simbench::app {
 namespace {
 
 using testing::HasSubstr;
-
-const std::string kBody = test_data_path("ibl/_iblrig_bodyCamera.timestamps.ssv");
-const std::string kLeft = test_data_path("ibl/_iblrig_leftCamera.frameData.bin");
 
 std::uint32_t cycle_clock(unsigned seconds, unsigned cycles, unsigned offsets) {
   return seconds << 25 | cycles << 12 | offsets;
@@ -64,9 +61,10 @@ TEST(IblRecording, FrameDataIsDecoded) {
 
 // Part of the variance of this camera's delays is slow (docs/reference/d455.md section 4): the
 // nominal worlds take that part, as AR(1), for common to a host's cameras.
-TEST(IblRecording, PartOfTheDelaysIsSlow) {
+TEST(IblRecording, PartOfTheRealDelaysIsSlow) {
+  SIMBENCH_SKIP_WITHOUT(kRealBody);
   std::vector<double> delays_ms;
-  for (const StampedFrame& frame : read_ibl_recording(kBody)) {
+  for (const StampedFrame& frame : read_ibl_recording(kRealBody)) {
     delays_ms.push_back(to_ms(frame.arrival - frame.sensor));
   }
   // Less the clocks' drift: the mean of the 30 s around each.
@@ -134,14 +132,65 @@ TEST(IblRecording, AReadErrorAtAnyByteIsAnError) {
   }
 }
 
+// Numbers of frames that the generated recordings lack: one, two together, one.
+const std::vector<std::int64_t> kLost = {700, 3000, 3001, 5000};
+
+TEST(IblRecording, EveryStampOfAGeneratedRecordingIsRead) {
+  const ScratchFolder folder;
+  const IblWorld world = {.lost = kLost};
+  const std::vector<IblFrame> made = ibl_frames(world);
+  for (const std::string& path : {folder.write("a.timestamps.ssv", ibl_timestamps(world)),
+                                  folder.write("a.frameData.bin", ibl_frame_data(world))}) {
+    const auto frames = read_ibl_recording(path);
+    ASSERT_EQ(frames.size(), made.size());
+    const bool counts = path.ends_with(".bin");
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const std::int64_t number = made[i].number;
+      // 33.125 ms are whole microseconds, and the clock goes on where it wraps.
+      ASSERT_EQ(frames[i].sensor, Nanoseconds(108'000'000'000 + number * 33'125'000)) << i;
+      ASSERT_EQ(frames[i].arrival, Nanoseconds(100 * (made[i].host_100_ns - made[0].host_100_ns)));
+      ASSERT_EQ(frames[i].counter, counts ? 1000U + static_cast<unsigned>(number) : i);
+    }
+    const evaluation::CameraStatistics found = evaluation::camera_statistics(frames);
+    EXPECT_EQ(found.long_intervals, 3);
+    EXPECT_EQ(found.missing_frames, counts ? 4 : 0);
+  }
+}
+
 std::vector<CameraStream> through_csv(const std::string& path) {
   CsvRecordingReader reader;
   reader.read_text(rs_csv_text(read_ibl_recording(path)), "body.csv");
   return reader.take();
 }
 
+// Exponential delays of mean m: excess m, median m ln 2, quantile q of -m ln(1 - q), deviation m.
+// The tolerances are four standard errors of 6001 frames; the drift's is 0.2 ms / (57.4 s
+// sqrt(6001)).
+TEST(IblRecording, AGeneratedRecordingGivesWhatWasPutIn) {
+  const ScratchFolder folder;
+  const evaluation::Replay replay =
+      evaluation::run_replay(through_csv(folder.write("a.ssv", ibl_timestamps())));
+  ASSERT_EQ(replay.cameras.size(), 1U);
+  const evaluation::CameraStatistics& found = replay.cameras[0].statistics;
+  EXPECT_EQ(found.frames, 6001);
+  EXPECT_EQ(found.long_intervals, 0);
+  EXPECT_NEAR(found.span_s, 6 * 33.125 * (1 - 215e-6), 0.004);  // of arrivals
+  EXPECT_NEAR(found.sensor_period.mean_ms, 33.125, 1e-9);
+  EXPECT_NEAR(found.sensor_period.sd_ms, 0, 1e-9);
+  EXPECT_NEAR(found.arrival_period.mean_ms, 33.125 * (1 - 215e-6), 0.001);
+  EXPECT_NEAR(found.arrival_period.sd_ms, 0.2 * std::sqrt(2), 0.02);
+  EXPECT_NEAR(found.drift_ppm, -215, 0.18);
+  EXPECT_NEAR(found.envelope_drift_ppm, -215, 0.01);  // two minima, 159 s apart
+  EXPECT_NEAR(found.residual.sd_ms, 0.2, 0.015);
+  EXPECT_NEAR(found.excess.mean_ms, 0.2, 0.011);
+  EXPECT_NEAR(found.excess.p50_ms, 0.2 * std::log(2), 0.011);
+  EXPECT_NEAR(found.excess.p95_ms, 0.2 * std::log(20), 0.046);
+  EXPECT_NEAR(found.excess.p99_ms, 0.2 * std::log(100), 0.11);
+}
+
 TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
-  const evaluation::Replay replay = evaluation::run_replay(through_csv(kBody));
+  SIMBENCH_SKIP_WITHOUT(kRealBody);
+  const evaluation::Replay replay = evaluation::run_replay(through_csv(kRealBody));
   ASSERT_EQ(replay.cameras.size(), 1U);
   const evaluation::CameraStatistics& found = replay.cameras[0].statistics;
   EXPECT_EQ(found.frames, 6001);
@@ -172,7 +221,8 @@ TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
 }
 
 TEST(IblRecording, TheRealLeftCameraIsRead) {
-  const auto frames = read_ibl_recording(kLeft);
+  SIMBENCH_SKIP_WITHOUT(kRealLeft);
+  const auto frames = read_ibl_recording(kRealLeft);
   ASSERT_EQ(frames.size(), 135U);
   EXPECT_EQ(frames.front().counter, 389918212U);
   EXPECT_EQ(frames.back().counter, 389918346U);

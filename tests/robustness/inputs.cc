@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scenarios/loader.h"
+#include "tests/data/ibl_recordings.h"
 #include "tests/robustness/child.h"
 #include "tests/robustness/mutation.h"
 #include "tests/scratch_folder.h"
@@ -33,13 +34,6 @@ constexpr const char* kRig = R"({
   "trigger": "manual"
 }
 )";
-
-// The first lines of a text.
-std::string head(const std::string& text, int lines) {
-  std::size_t end = 0;
-  for (int i = 0; i < lines && end != std::string::npos; ++i) end = text.find('\n', end + 1);
-  return end == std::string::npos ? text : text.substr(0, end + 1);
-}
 
 }  // namespace
 
@@ -93,14 +87,10 @@ void Inputs::add_files() {
   }
   add({"scenario", 6, files_of("scenario"), {{"validate", "%"}, {"describe", "%"}}});
 
-  copy("tests/data/ibl/_iblrig_bodyCamera.timestamps.ssv", "ibl/_iblrig_bodyCamera.timestamps.ssv");
-  copy("tests/data/ibl/_iblrig_leftCamera.frameData.bin", "ibl/_iblrig_leftCamera.frameData.bin");
-  for (const std::string& file : files_of("ibl")) {
-    const std::string path = folder_ + "/" + kGood + "/" + file;
-    // Whole lines of text and whole rows of 32 bytes.
-    const std::string text = content(path);
-    put(path, file.ends_with(".bin") ? text.substr(0, 3200) : head(text, 100));
-  }
+  fs::create_directories(fs::path(folder_) / kGood / "ibl");
+  const std::string ibl = folder_ + "/" + kGood + "/ibl/";
+  put(ibl + "body.timestamps.ssv", ibl_timestamps({.frames = 100}));
+  put(ibl + "left.frameData.bin", ibl_frame_data({.frames = 100}));
   add({"ibl", 4, files_of("ibl"), {{"convert-ibl", "%"}}});
 
   fs::create_directories(fs::path(folder_) / kGood / "clock_log");
