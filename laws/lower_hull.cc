@@ -19,10 +19,6 @@ void thin(std::vector<LinePoint>& vertices) {
   vertices.resize(kept);
 }
 
-bool is_vertex(const Envelope::Point& a, const Envelope::Point& b, const Envelope::Point& c) {
-  return (c.y - a.y) * (b.x - a.x) > (b.y - a.y) * (c.x - a.x);
-}
-
 // Drops the vertices that a point to the right of all takes the place of: one step of Andrew's
 // monotone chain.
 template <class Point>

@@ -250,6 +250,12 @@ class Envelope {
   mutable bool is_current_ = false;
 };
 
+// As of points with whole numbers, in double precision.
+inline bool is_vertex(const Envelope::Point& a, const Envelope::Point& b,
+                      const Envelope::Point& c) {
+  return (c.y - a.y) * (b.x - a.x) > (b.y - a.y) * (c.x - a.x);
+}
+
 }  // namespace simbench
 
 #endif  // SIMBENCH_LAWS_LOWER_HULL_H_

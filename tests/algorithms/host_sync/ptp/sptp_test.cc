@@ -2,15 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/random/mersenne_twister.hpp>
 #include <cmath>
-#include <string>
 #include <vector>
 
-#include "algorithms/host_sync/ptp/ptp_message.h"
-#include "tests/algorithms/host_sync/script_host.h"
-#include "tests/algorithms/host_sync/unreliable_link.h"
-#include "tests/nonempty.h"
+#include "tests/algorithms/host_sync/closed_loop.h"
 
 namespace simbench {
 namespace {
@@ -123,109 +118,21 @@ TEST(SptpServoTest, WithoutAStableOffsetTheMeanFrequencyIsZero) {
   EXPECT_EQ(servo.hold().ppb, 0);
 }
 
-class SptpTest : public testing::Test {
- protected:
-  SptpTest() {
-    world_.connect(kSptpLatency);
-    for (const PeerId slave : world_.slaves()) {
-      world_.host(slave).offset = from_ms(-400.0 * slave);
-      world_.host(slave).uniform = 0.4;
-    }
-    for (PeerId host = 0; host < 3; ++host) world_.host(host).stamps_departures = true;
-  }
-  double lead_us(PeerId slave) { return to_ms(world_.host(slave).lead_over(world_.host(0))) * 1e3; }
-
-  ScriptWorld world_{3};
-  SptpSettings settings_{
-      .servo_limits = {.max_frequency_ppb = 5e5, .first_step_threshold_ns = 20'000}};
-};
-
-TEST_F(SptpTest, StepsTheSlavesToTheMaster) {
+TEST(SptpTest, TheMasterSendsTwoMessagesASecond) {
+  ScriptWorld world(2);
+  world.connect(kSptpLatency);
+  world.host(0).stamps_departures = world.host(1).stamps_departures = true;
+  world.host(1).offset = from_ms(-400);
+  world.host(1).uniform = 0.4;
   std::size_t messages = 0;
-  world_.script_link(0, 1, [&messages](std::size_t, const Bytes&) {
+  world.script_link(0, 1, [&messages](std::size_t, const Bytes&) {
     ++messages;
     return std::vector{kSptpLatency};
   });
-  Sptp sync(settings_);
-  EXPECT_EQ(sync.warm_up(), from_ms(60e3));
-  world_.run(sync, from_ms(60e3));
-  EXPECT_EQ(world_.unfinished(), 3u);
-  for (const PeerId slave : nonempty(world_.slaves())) {
-    EXPECT_NEAR(lead_us(slave), 0, 0.01);
-    ASSERT_EQ(world_.host(slave).outcomes.size(), 1u);
-    EXPECT_TRUE(world_.host(slave).outcomes[0].synchronised)
-        << world_.host(slave).outcomes[0].message;
-    const Exchange& exchange = world_.host(slave).exchanges.front();
-    EXPECT_EQ((*exchange.t2 - *exchange.t1) + (*exchange.t4 - *exchange.t3), 2 * kSptpLatency);
-  }
+  Sptp sync({.servo_limits = {.max_frequency_ppb = 5e5, .first_step_threshold_ns = 20'000}});
+  world.run(sync, from_ms(60e3));
+  expect_locked(world);
   EXPECT_EQ(messages, 2u * 60) << "a Sync and an Announce for each second";
-}
-
-TEST_F(SptpTest, AsymmetryIsInTheResultWithItsHalf) {
-  world_.set_latency(1, 0, kSptpLatency + from_ms(0.1));
-  Sptp sync(settings_);
-  world_.run(sync, from_ms(60e3));
-  EXPECT_NEAR(lead_us(1), 50, 0.01);
-}
-
-TEST_F(SptpTest, CorrectionsOfTransparentClocksAreTakenOut) {
-  ScriptWorld& world = world_;
-  const auto corrected = [&world](PeerId from, PeerId to, Nanoseconds residence) {
-    return [&world, from, to, residence](std::size_t, const Bytes& bytes) {
-      const auto message = decode_ptp_message(bytes);
-      if (!message || static_cast<int>(message->type) > 3) return std::vector{kSptpLatency};
-      PtpMessage changed = *message;
-      changed.correction += residence.count() * 65'536;
-      world.call_at(world.now() + kSptpLatency + residence,
-                    [&world, from, to, changed] { world.host(to).deliver(from, encode(changed)); });
-      return std::vector<Nanoseconds>{};
-    };
-  };
-  world_.script_link(0, 1, corrected(0, 1, from_ms(0.7)));
-  world_.script_link(1, 0, corrected(1, 0, from_ms(0.1)));
-  Sptp sync(settings_);
-  world_.run(sync, from_ms(60e3));
-  EXPECT_NEAR(lead_us(1), 0, 0.01);
-}
-
-TEST_F(SptpTest, LossDuplicatesReorderingAndGarbageCostMeasurementsOnly) {
-  boost::random::mt19937_64 engine(17);
-  const LinkScript unreliable = unreliable_link(
-      engine, kSptpLatency, {.twice_after = from_ms(0.3), .late = {kSptpLatency + from_ms(2500)}});
-  world_.script_link(0, 1, unreliable);
-  world_.script_link(1, 0, unreliable);
-  for (int i = 0; i < 1000; ++i) {
-    const Bytes bytes = random_bytes(engine, 70);
-    world_.call_at(from_ms(60.0 * i), [this, bytes] { world_.host(1).deliver(0, bytes); });
-    world_.call_at(from_ms(60.0 * i + 9), [this, bytes] { world_.host(0).deliver(1, bytes); });
-  }
-  Sptp sync(settings_);
-  world_.run(sync, from_ms(240e3));
-  EXPECT_NEAR(lead_us(1), 0, 0.5) << "seed 17";
-  EXPECT_NEAR(lead_us(2), 0, 0.01);
-}
-
-TEST_F(SptpTest, ASilentMasterIsOneOutcome) {
-  world_.script_link(0, 2, [](std::size_t, const Bytes&) { return std::vector<Nanoseconds>{}; });
-  Sptp sync(settings_);
-  world_.run(sync, from_ms(60e3));
-  ASSERT_EQ(world_.host(2).outcomes.size(), 1u);
-  EXPECT_NE(world_.host(2).outcomes[0].message.find("has not locked"), std::string::npos);
-  EXPECT_TRUE(world_.host(1).outcomes.at(0).synchronised);
-}
-
-TEST(SptpStampsTest, StampsThatTheHostDoesNotTakeAreAnOutcomeThatNamesThem) {
-  for (const auto& [source, what] : {std::pair{StampSource::kCard, "Host::hardware_clock"},
-                                     {StampSource::kKernel, "MessageChannel::transmit_stamp"}}) {
-    ScriptWorld world(2);
-    world.connect(kSptpLatency);
-    Sptp sync({.stamps = source});
-    world.run(sync, from_ms(60e3));
-    ASSERT_EQ(world.host(1).outcomes.size(), 1u) << what;
-    EXPECT_NE(world.host(1).outcomes[0].message.find(what), std::string::npos)
-        << world.host(1).outcomes[0].message;
-    EXPECT_TRUE(world.host(1).steps.empty());
-  }
 }
 
 }  // namespace
