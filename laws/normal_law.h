@@ -1,7 +1,7 @@
 // The standard normal law: its density and its distribution function.
 //
-//   normal_probability(0);           // 0.5: half of all values are below the mean
-//   normal_density(0);               // 0.3989
+//   normal_probability(0);  // 0.5: half of all values are below the mean
+//   normal_density(0);      // 0.3989
 #ifndef SIMBENCH_LAWS_NORMAL_LAW_H_
 #define SIMBENCH_LAWS_NORMAL_LAW_H_
 

@@ -8,7 +8,7 @@
 // Cost: a multiplication and an interpolation; no allocation.
 //
 //   const QuantileTable delay_ms(scenario.usb.delivery_quantiles_ms);
-//   double ms = delay_ms.value_at(stream.uniform());
+//   double ms = delay_ms.value_at(0.999);
 #ifndef SIMBENCH_LAWS_QUANTILE_TABLE_H_
 #define SIMBENCH_LAWS_QUANTILE_TABLE_H_
 

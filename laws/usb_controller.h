@@ -15,9 +15,10 @@
 // time. In lanes the completion is known at submission; fair sharing revises it as frames come and
 // go.
 //
-//   if (!bus.submit(now, stream, bytes, frame)) lose(frame);
+//   UsbController bus({.bytes_per_ns = 0.4, .is_fair = true}, 6);
+//   const bool is_lost = !bus.submit(from_ms(3), 0, 460'800, 7);
 //   // and at each time that wake_up() names:
-//   while (const auto done = bus.take_completed(now)) deliver(*done);
+//   while (const auto done = bus.take_completed(bus.wake_up())) print(*done);
 //
 // Complexity: O(log n) per frame, n frames pending on the controller. Source:
 // docs/reference/d455.md section 3, docs/design.md section 7.

@@ -75,6 +75,14 @@ extern const TwoWayExchange exchange;
 extern TwoWayEstimator& estimator;
 extern DeviceTimeEntry entry;
 
+// laws/
+struct Draws {
+  double uniform();
+  double exponential(double mean);
+  bool chance(double probability);
+};
+extern Draws draws;
+
 // recording/, and what several folders use
 extern const scenarios::Scenario scenario;
 extern const std::uint64_t seed, run_seed;
@@ -247,7 +255,6 @@ extern const scenarios::LeapSecond leap;
 extern SystemClock& leaping_clock;
 extern const HostTime zero;
 extern const double coefficient_ppb_per_k;
-extern UsbController bus;
 extern FrameFeeds feeds;
 extern FrameSupply& frame_supply;
 extern CameraWorld& camera_world;
