@@ -1,8 +1,8 @@
 // A scenario as JSON: what the structs that are made from scenarios/schema.json are read with, and
 // the sections that they do not have.
 //
-//   const auto scenario = document.get<Scenario>();
-//   const nlohmann::json again = scenario;
+//   const nlohmann::json document = scenario;
+//   const auto again = document.get<Scenario>();
 #ifndef SIMBENCH_SCENARIOS_SCENARIO_JSON_H_
 #define SIMBENCH_SCENARIOS_SCENARIO_JSON_H_
 

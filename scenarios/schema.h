@@ -6,6 +6,7 @@
 // that this walk does not heed is a programming error, so that nothing is silently unchecked.
 //
 //   static const JsonSchema schema(nlohmann::json::parse(part_schema_text()));
+//   const PlacedDocument document = parse_placed(text, {.label = "my_part.json"});
 //   validate(document.root, schema, document.places);
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_H_

@@ -1,8 +1,7 @@
 // The references of a JSON schema, put in place of what they name.
 //
-//   nlohmann::ordered_json schema = nlohmann::ordered_json::parse(text);
-//   expand_references(schema);  // {"$ref": "#/definitions/oscillator"} is now the oscillator
-//   itself
+//   auto schema = nlohmann::ordered_json::parse(text);
+//   expand_references(schema);  // {"$ref": "#/definitions/oscillator"} is now that definition
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_REFERENCES_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_REFERENCES_H_
 

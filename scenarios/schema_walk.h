@@ -1,10 +1,11 @@
 // Walks over a scenario's JSON with what the schema says of each value: what is true of a member
 // (its stage, whether a relay can carry it) stands in scenarios/schema.json alone.
 //
-//   for_each_value("", ordered_schema(), document, [](const auto& pointer, const auto& node,
-//                                                     const auto& value) {
-//     if (node.contains("x-relay")) fmt::print("{} is {}\n", pointer, value.dump());
-//   });
+//   const nlohmann::json document = scenario;
+//   for_each_value("", ordered_schema(), document,
+//                  [](const auto& pointer, const auto& node, const auto& value) {
+//                    if (node.contains("x-relay")) print(pointer, value.dump());
+//                  });
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_WALK_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_WALK_H_
 
