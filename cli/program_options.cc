@@ -11,9 +11,9 @@
 
 #include "app/program_pipelines.h"
 #include "scenarios/document.h"
-#include "scenarios/fields.h"
 #include "scenarios/input_file.h"
 #include "scenarios/loader.h"
+#include "scenarios/scenario_json.h"
 
 namespace simbench::cli {
 namespace {

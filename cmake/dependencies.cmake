@@ -35,16 +35,6 @@ target_include_directories(simbench_sodium SYSTEM INTERFACE
 target_link_libraries(simbench_sodium INTERFACE
   $<BUILD_INTERFACE:${SIMBENCH_SODIUM_LIBRARY}> $<INSTALL_INTERFACE:sodium>)
 
-# valijson 1.0: JSON Schema validation over nlohmann-json. Headers only, used inside scenarios/.
-find_path(SIMBENCH_VALIJSON_INCLUDE_DIR valijson/validator.hpp
-  HINTS ${SIMBENCH_DEPS_DIR}/usr/include NO_CACHE)
-if(NOT SIMBENCH_VALIJSON_INCLUDE_DIR)
-  message(FATAL_ERROR "valijson: not found; run tools/setup")
-endif()
-add_library(simbench_valijson INTERFACE)
-target_include_directories(simbench_valijson SYSTEM INTERFACE
-  $<BUILD_INTERFACE:${SIMBENCH_VALIJSON_INCLUDE_DIR}>)
-
 # uPlot 1.6: draws the figures of the HTML report, embedded in reports/. JavaScript, not linked.
 find_path(SIMBENCH_UPLOT_DIR dist/uPlot.iife.min.js
   HINTS ${SIMBENCH_DEPS_DIR}/usr/share/javascript/uplot NO_CACHE)

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/fields.h"
 #include "scenarios/lazy.h"
+#include "scenarios/scenario_json.h"
 
 namespace simbench::scenarios {
 

@@ -4,6 +4,7 @@
 
 #include "scenarios/document.h"
 #include "scenarios/schema.h"
+#include "scenarios/schema_walk.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -13,18 +14,10 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kLongestListed = 32;
 
-// What is no part of the world; pipelines are compared by name.
-constexpr const char* kNoWorld[] = {"/name",
-                                    "/summary",
-                                    "/schema_version",
-                                    "/published",
-                                    "/published_figures",
-                                    "/studio/published",
-                                    "/evaluation/table",
-                                    "/pipelines"};
-
+// Without what is no part of the world; pipelines are compared by name.
 json world_of(json scenario) {
-  for (const char* const pointer : kNoWorld) {
+  static const std::vector<std::string> no_world = pointers_that_say("x-world", false);
+  for (const std::string& pointer : no_world) {
     const json::json_pointer at(pointer);
     if (scenario.contains(at)) scenario[at.parent_pointer()].erase(at.back());
   }

@@ -12,11 +12,12 @@
 
 #include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
-#include "scenarios/fields.h"
 #include "scenarios/frame_control_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/published_checks.h"
+#include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
+#include "scenarios/schema_walk.h"
 #include "scenarios/wifi_checks.h"
 
 namespace simbench::scenarios {
@@ -71,12 +72,6 @@ void check_hosts(const Scenario& scenario) {
   }
   check_size(scenario, "/cameras/host_of_camera", cameras.host_of_camera.size(), "hosts",
              cameras.count, "cameras");
-  for (std::size_t j = 0; j < cameras.host_of_camera.size(); ++j) {
-    if (cameras.host_of_camera[j] < hosts) continue;
-    fail_at(scenario, fmt::format("/cameras/host_of_camera/{}", j),
-            fmt::format("found {}, allowed 0 to {} (/hosts/count is {})", cameras.host_of_camera[j],
-                        hosts - 1, hosts));
-  }
 }
 
 void check_skews(const Scenario& scenario) {
@@ -278,26 +273,19 @@ void check_calibrations(const Scenario& scenario) {
 }
 
 void check_auto_exposure(const Scenario& scenario) {
-  // Shorter intervals would make more steps than a computer can hold.
-  constexpr double kShortestIntervalMs = 1;
   const AutoExposure& automatic = scenario.cameras.auto_exposure;
-  const double interval_ms = automatic.step_interval_exponential_ms;
-  if (interval_ms > 0 && interval_ms < kShortestIntervalMs) {
-    fail_at(scenario, "/cameras/auto_exposure/step_interval_exponential_ms",
-            fmt::format("found {}, allowed 0 (no auto-exposure) or at least {}", interval_ms,
-                        kShortestIntervalMs));
-  }
-  if (automatic.min_ms > automatic.max_ms) {
-    fail_at(scenario, "/cameras/auto_exposure/min_ms",
-            fmt::format("found {}, allowed at most /cameras/auto_exposure/max_ms, {}",
-                        automatic.min_ms, automatic.max_ms));
-  }
+  if (automatic.min_ms <= automatic.max_ms) return;
+  fail_at(scenario, "/cameras/auto_exposure/min_ms",
+          fmt::format("found {}, allowed at most /cameras/auto_exposure/max_ms, {}",
+                      automatic.min_ms, automatic.max_ms));
 }
 
 // A fault must state the members of its kind, and no others.
-void check_members(const Scenario& scenario, const std::string& pointer, std::string_view kind,
-                   const std::vector<std::string_view>& members, const nlohmann::json& stated) {
-  for (const std::string_view member : members) {
+void check_members(const Scenario& scenario, const std::string& pointer,
+                   const nlohmann::ordered_json& kinds, const nlohmann::json& stated) {
+  const auto kind = stated.at("kind").get<std::string>();
+  const auto members = kinds.at(kind).at("needs").get<std::vector<std::string>>();
+  for (const std::string& member : members) {
     if (stated.contains(member)) continue;
     fail_at(scenario, fmt::format("{}/{}", pointer, member),
             fmt::format("found nothing, \"{}\" needs {}", kind, fmt::join(members, ", ")));
@@ -310,43 +298,38 @@ void check_members(const Scenario& scenario, const std::string& pointer, std::st
   }
 }
 
-void check_below(const Scenario& scenario, const std::string& pointer, std::int64_t found,
-                 const char* count_pointer, std::int64_t count) {
-  if (found < count) return;
-  fail_at(
-      scenario, pointer,
-      fmt::format("found {}, allowed 0 to {} ({} is {})", found, count - 1, count_pointer, count));
-}
-
-// A clock must run forward while it takes a second.
-void check_smear(const Scenario& scenario, const std::string& pointer, double smear_ms) {
-  constexpr double kShortestSmearMs = 10'000;
-  if (smear_ms == 0 || smear_ms >= kShortestSmearMs) return;
-  fail_at(scenario, pointer,
-          fmt::format("found {}, allowed 0 (a step) or at least {}", smear_ms, kShortestSmearMs));
-}
-
 void check_faults(const Scenario& scenario, const nlohmann::json& document) {
-  const nlohmann::json& stated = document.at("faults");
-  for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
-    const std::string pointer = fmt::format("/faults/{}", i);
-    std::visit(
-        [&](const auto& fault) {
-          std::vector<std::string_view> members;
-          for_each_member(fault, [&](const char* name, auto) { members.emplace_back(name); });
-          check_members(scenario, pointer, fault.kKind, members, stated[i]);
-          if constexpr (requires { fault.camera; }) {
-            check_below(scenario, pointer + "/camera", fault.camera, "/cameras/count",
-                        scenario.cameras.count);
-          } else if constexpr (requires { fault.host; }) {
-            check_below(scenario, pointer + "/host", fault.host, "/hosts/count",
-                        scenario.hosts.count);
-          } else {
-            check_smear(scenario, pointer + "/smear_ms", fault.smear_ms);
-          }
-        },
-        scenario.faults[i]);
+  const nlohmann::json& faults = document.at("faults");
+  const auto& kinds = ordered_schema().at("/properties/faults/items/x-kinds"_json_pointer);
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    check_members(scenario, fmt::format("/faults/{}", i), kinds, faults[i]);
   }
+}
+
+// What the schema says of a value beside its own range: that it is below another member
+// ("x-below"), or 0 or at least so much ("x-zero-or-from").
+void check_values(const Scenario& scenario, const nlohmann::json& document) {
+  for_each_value(
+      "", ordered_schema(), document,
+      [&](const std::string& pointer, const nlohmann::ordered_json& node,
+          const nlohmann::json& value) {
+        if (node.contains("x-below")) {
+          const auto below = node["x-below"].get<std::string>();
+          const auto count = document.at(nlohmann::json::json_pointer(below)).get<std::int64_t>();
+          if (value < count) return;
+          fail_at(scenario, pointer,
+                  fmt::format("found {}, allowed 0 to {} ({} is {})", value.dump(), count - 1,
+                              below, count));
+        }
+        if (node.contains("x-zero-or-from")) {
+          const nlohmann::ordered_json& allowed = node["x-zero-or-from"];
+          const auto found = value.get<double>();
+          if (found == 0 || found >= allowed["from"].get<double>()) return;
+          fail_at(scenario, pointer,
+                  fmt::format("found {}, allowed 0 ({}) or at least {}", found,
+                              allowed["zero"].get<std::string>(), allowed["from"].dump()));
+        }
+      });
 }
 
 // A plain name in a host's folder, and a variable that leaves the loader alone.
@@ -556,7 +539,9 @@ void check_studio(const Scenario& scenario) {
 
 void check(const Scenario& scenario, const nlohmann::json& document) {
   check_name(scenario, "/name", scenario.name);
+  check_faults(scenario, document);
   check_hosts(scenario);
+  check_values(scenario, document);
   check_frames(scenario);
   check_host_clocks(scenario);
   check_skews(scenario);
@@ -571,7 +556,6 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_calibrations(scenario);
   check_auto_exposure(scenario);
   check_frame_control(scenario);
-  check_faults(scenario, document);
   check_pipelines(scenario);
   check_studio(scenario);
 }

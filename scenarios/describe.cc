@@ -68,20 +68,19 @@ std::string unit_in_name(std::string_view name) {
 namespace {
 
 // The source of a value below /cameras in the profile of the camera model; "" if none.
-std::string profile_source(const Cameras& cameras, const std::string& pointer) {
+std::string profile_source(const Cameras& cameras, const std::string& pointer,
+                           const ordered_json* node) {
   const CameraProfile* camera = find_camera_profile(cameras.model);
   if (camera == nullptr) return "";
   if (pointer == "/cameras/model") {
     return fmt::format("profile of the {} (simbench list cameras)", camera->name);
   }
   if (pointer == "/cameras/sync_mode") return camera->sync_source;
-  for (std::size_t i = 0; i < cameras.streams.size(); ++i) {
-    const StreamProfile* stream = camera->stream(cameras.streams[i].kind);
-    if (stream == nullptr) continue;
-    for (const std::string_view member :
-         {"width", "height", "bytes_per_pixel", "mode_rate_hz", "shutter"}) {
-      if (pointer == fmt::format("/cameras/streams/{}/{}", i, member)) return stream->source;
-    }
+  if (node == nullptr || !node->value("x-profile", false)) return "";
+  for (const Stream& each : cameras.streams) {
+    const StreamProfile* stream = camera->stream(each.kind);
+    const auto place = fmt::format("/cameras/streams/{}/", &each - cameras.streams.data());
+    if (stream != nullptr && pointer.starts_with(place)) return stream->source;
   }
   return "";
 }
@@ -144,7 +143,7 @@ class Walker {
       line.source = "computed for this world (scenarios/calibration.h)";
       return lines_.push_back(std::move(line));
     }
-    const std::string profile = profile_source(cameras_, pointer);
+    const std::string profile = profile_source(cameras_, pointer, node);
     if (!profile.empty()) line.source = profile;
     if (!places_.nearest(pointer).profile_source.empty()) {
       line.source = places_.nearest(pointer).profile_source;

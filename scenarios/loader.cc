@@ -16,8 +16,8 @@
 #include "scenarios/builtin_files.h"
 #include "scenarios/changes.h"
 #include "scenarios/document.h"
-#include "scenarios/fields.h"
 #include "scenarios/oscillator_class.h"
+#include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
 
 namespace simbench::scenarios {
@@ -172,7 +172,12 @@ bool is_algorithm_parameter(const std::vector<std::string>& keys) {
 // The members that the schema lets an object below the scenario do without.
 std::vector<std::string> optional_members(const nlohmann::ordered_json* node) {
   if (node == nullptr || node == &ordered_schema()) return {};
-  return node->value("x-optional", std::vector<std::string>());
+  std::vector<std::string> members;
+  if (!node->contains("properties")) return members;
+  for (const auto& [key, child] : node->at("properties").items()) {
+    if (is_optional(child)) members.push_back(key);
+  }
+  return members;
 }
 
 // --set /json/pointer=value: replaces the value at the pointer; null removes it. The value must

@@ -25,6 +25,15 @@ bool Cameras::follows_trigger(const Stream& stream) const {
   return camera->triggers(sync_mode, stream.kind);
 }
 
+const char* PublishedFigure::number_name() const {
+  if (value) return "value";
+  return at_most ? "at_most" : "at_least";
+}
+
+double PublishedFigure::number() const {
+  return at_most.value_or(value.value_or(at_least.value_or(0)));
+}
+
 std::vector<std::size_t> Scenario::cameras_by_host() const {
   std::vector<std::size_t> counts(static_cast<std::size_t>(hosts.count));
   for (std::int64_t camera = 0; camera < cameras.count; ++camera) {

@@ -4,104 +4,52 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <regex>
 #include <string_view>
 #include <utility>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 #include <vector>
 
+#include "algorithms/ports/assert.h"
 #include "scenarios/builtin_files.h"
+#include "scenarios/schema_references.h"
 
 namespace simbench::scenarios {
-
-using valijson::adapters::NlohmannJsonAdapter;
-
-struct JsonSchema::Compiled {
-  explicit Compiled(const nlohmann::json& text) {
-    const NlohmannJsonAdapter adapter(text);
-    valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(adapter, schema);
-  }
-  valijson::Schema schema;
-};
-
-JsonSchema::JsonSchema(nlohmann::json text)
-    : text_(std::move(text)), compiled_(std::make_unique<const Compiled>(text_)) {}
-
-JsonSchema::~JsonSchema() = default;
-
-std::vector<JsonSchema::Refusal> JsonSchema::validate(const nlohmann::json& document) const {
-  valijson::Validator validator;
-  valijson::ValidationResults results;
-  const NlohmannJsonAdapter target(document);
-  std::vector<Refusal> refusals;
-  if (validator.validate(compiled_->schema, target, &results)) return refusals;
-  for (const auto& error : results) {
-    // The place is written as {"<root>", "[key]", "[0]"}.
-    Refusal refusal{{}, error.description};
-    for (std::size_t i = 1; i < error.context.size(); ++i) {
-      refusal.keys.push_back(error.context[i].substr(1, error.context[i].size() - 2));
-    }
-    refusals.push_back(std::move(refusal));
-  }
-  return refusals;
-}
-
 namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// Makes every property of every object required, except those in the schema's "x-optional".
-void require_all(json& node) {
-  if (node.contains("properties")) {
-    const json optional = node.value("x-optional", json::array());
-    json required = json::array();
-    for (auto& [key, child] : node["properties"].items()) {
-      if (std::find(optional.begin(), optional.end(), key) == optional.end()) {
-        required.push_back(key);
-      }
-      require_all(child);
+// The keywords that are heeded, the texts, and what the parts of simbench that walk the schema of
+// scenarios heed (docs/design.md section 7).
+constexpr std::array kKeywords = {
+    "type",      "enum",        "minimum",     "maximum",        "exclusiveMinimum",
+    "minLength", "maxLength",   "pattern",     "minItems",       "maxItems",
+    "items",     "uniqueItems", "properties",  "maxProperties",  "required",
+    "$schema",   "title",       "description", "default",        "additionalProperties",
+    "x-source",  "x-optional",  "x-type",      "x-name",         "x-declares",
+    "x-stage",   "x-ideal",     "x-stays",     "x-relay",        "x-scoring",
+    "x-world",   "x-below",     "x-profile",   "x-zero-or-from", "x-kinds"};
+
+// A keyword that nobody heeds would leave something unchecked.
+void check_keywords(const json& node) {
+  for (const auto& [keyword, value] : node.items()) {
+    SIMBENCH_ASSERT(std::ranges::count(kKeywords, keyword) == 1,
+                    "a schema has only keywords that simbench heeds");
+    if (keyword == "properties") {
+      for (const json& child : value) check_keywords(child);
+    } else if ((keyword == "items" || keyword == "additionalProperties") && value.is_object()) {
+      check_keywords(value);
     }
-    node["required"] = std::move(required);
   }
-  for (const char* const container : {"items", "additionalProperties"}) {
-    if (node.contains(container) && node[container].is_object()) require_all(node[container]);
-  }
-}
-
-// Replaces each {"$ref": "#/definitions/NAME", ...} by that definition, and merges the members
-// beside the reference into it (the texts for this place).
-void expand(ordered_json& node, const ordered_json& definitions) {
-  if (node.is_object() && node.contains("$ref")) {
-    constexpr std::string_view kDefinitions = "#/definitions/";
-    const auto name = node["$ref"].get<std::string>().substr(kDefinitions.size());
-    ordered_json whole = definitions.at(name);
-    node.erase("$ref");
-    whole.merge_patch(node);
-    node = std::move(whole);
-  }
-  if (!node.is_structured()) return;
-  for (ordered_json& child : node) expand(child, definitions);
-}
-
-json schema_for(Completeness completeness) {
-  json schema = ordered_schema();
-  if (completeness == Completeness::kResolved) require_all(schema);
-  return schema;
-}
-
-const JsonSchema& checker(Completeness completeness) {
-  static const JsonSchema differences(schema_for(Completeness::kDifferences));
-  static const JsonSchema resolved(schema_for(Completeness::kResolved));
-  return completeness == Completeness::kResolved ? resolved : differences;
 }
 
 bool has_type(const json& node, const std::string& name) {
-  const json types = node.value("type", json());
-  return types == name || (types.is_array() && std::count(types.begin(), types.end(), name) > 0);
+  const auto types = node.find("type");
+  if (types == node.end()) return false;
+  return *types == name ||
+         (types->is_array() && std::count(types->begin(), types->end(), name) > 0);
 }
 
 std::string range_of(const json& node) {
@@ -138,14 +86,9 @@ std::string allowed(const json& node) {
   return fmt::format("{}", fmt::join(kinds, node.contains("enum") ? ", " : " or "));
 }
 
-struct Problem {
-  std::string pointer;
-  std::string text;
-};
-
-Problem unknown_key(const std::string& pointer, const std::string& key, const json& node) {
+SchemaProblem unknown_key(const std::string& pointer, const std::string& key, const json& node) {
   std::vector<std::string> known;
-  for (const auto& [name, child] : node["properties"].items()) known.push_back(name);
+  for (const auto& [name, child] : node.at("properties").items()) known.push_back(name);
   const std::vector<std::string> similar = nearest(key, known);
   return {child_pointer(pointer, key),
           similar.empty()
@@ -153,45 +96,95 @@ Problem unknown_key(const std::string& pointer, const std::string& key, const js
               : fmt::format("found an unknown key, did you mean {}?", fmt::join(similar, " or "))};
 }
 
-// The problems of a value itself, without those of its members.
-std::vector<Problem> problems_at(const std::string& pointer, const json& node, const json& value) {
-  std::vector<Problem> problems;
-  if (value.is_object() && has_type(node, "object")) {
-    if (!node.contains("properties")) return problems;
-    for (const auto& [key, member] : value.items()) {
-      if (!node["properties"].contains(key)) problems.push_back(unknown_key(pointer, key, node));
-    }
-    for (const json& key : node.value("required", json::array())) {
-      if (value.contains(key)) continue;
-      const auto name = key.get<std::string>();
-      problems.push_back({child_pointer(pointer, name),
-                          "found nothing, allowed " + allowed(node["properties"][name])});
-    }
-    return problems;
-  }
-  if (value.is_array() && has_type(node, "array") &&
-      value.size() >= node.value("minItems", std::size_t{0}) &&
-      value.size() <= node.value("maxItems", std::size_t{0})) {
-    return problems;
-  }
-  problems.push_back({pointer, fmt::format("found {}, allowed {}", shown(value), allowed(node))});
-  return problems;
+// Whether a text has as many characters as it may, not bytes.
+bool has_length(const json& node, const std::string& text) {
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+  if (count < node.value("minLength", std::size_t{0})) return false;
+  if (node.contains("maxLength") && count > node["maxLength"].get<std::size_t>()) return false;
+  return !node.contains("pattern") ||
+         std::regex_search(text, std::regex(node["pattern"].get<std::string>()));
 }
 
-// The problems where the schema refused the document.
-std::vector<Problem> problems_of(const JsonSchema::Refusal& refusal, const json& schema,
-                                 const json& document) {
-  const json* node = &schema;
-  const json* value = &document;
-  std::string pointer;
-  for (const std::string& key : refusal.keys) {
-    node = schema_of_child(*node, key);
-    if (node == nullptr) return {};
-    value = value->is_array() ? &value->at(std::stoul(key)) : &value->at(key);
-    pointer = child_pointer(pointer, key);
-  }
-  return problems_at(pointer, *node, *value);
+bool is_in_range(const json& node, double number) {
+  if (node.contains("minimum") && number < node["minimum"].get<double>()) return false;
+  if (node.contains("maximum") && number > node["maximum"].get<double>()) return false;
+  return !node.contains("exclusiveMinimum") || number > node["exclusiveMinimum"].get<double>();
 }
+
+bool has_size(const json& node, const json& array) {
+  if (array.size() < node.value("minItems", std::size_t{0})) return false;
+  if (node.contains("maxItems") && array.size() > node["maxItems"].get<std::size_t>()) return false;
+  if (!node.value("uniqueItems", false)) return true;
+  return std::ranges::none_of(
+      array, [&array](const json& item) { return std::ranges::count(array, item) > 1; });
+}
+
+// Types are strict: 1 is not "1".
+bool has_type_of(const json& node, const json& value) {
+  if (!node.contains("type")) return true;
+  if (value.is_number_integer()) return has_type(node, "integer") || has_type(node, "number");
+  return has_type(node, value.type_name());
+}
+
+// Whether a value is what the schema says, but for its members.
+bool is_accepted(const json& node, const json& value) {
+  if (!has_type_of(node, value)) return false;
+  if (node.contains("enum") && std::ranges::count(node["enum"], value) == 0) return false;
+  if (value.is_string()) return has_length(node, value.get_ref<const std::string&>());
+  if (value.is_number()) return is_in_range(node, value.get<double>());
+  if (value.is_array()) return has_size(node, value);
+  return !value.is_object() || !node.contains("maxProperties") ||
+         value.size() <= node["maxProperties"].get<std::size_t>();
+}
+
+// Collects the problems of a document, the innermost first.
+class Check {
+ public:
+  explicit Check(Completeness completeness) : completeness_(completeness) {}
+
+  void walk(const std::string& pointer, const json& node, const json& value) {
+    if (!is_accepted(node, value)) {
+      problems_.push_back(
+          {pointer, fmt::format("found {}, allowed {}", shown(value), allowed(node))});
+    } else if (value.is_array() && node.contains("items")) {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        walk(fmt::format("{}/{}", pointer, i), node["items"], value[i]);
+      }
+    } else if (value.is_object()) {
+      walk_members(pointer, node, value);
+    }
+  }
+
+  std::vector<SchemaProblem> take() { return std::move(problems_); }
+
+ private:
+  void walk_members(const std::string& pointer, const json& node, const json& value) {
+    for (const auto& [key, member] : value.items()) {
+      const json* const child = schema_of_child(node, key);
+      if (child != nullptr) walk(child_pointer(pointer, key), *child, member);
+    }
+    if (!node.contains("properties")) return;
+    if (node.value("additionalProperties", json()) == false) {
+      for (const auto& [key, member] : value.items()) {
+        if (!node["properties"].contains(key)) problems_.push_back(unknown_key(pointer, key, node));
+      }
+    }
+    const json required = node.value("required", json::array());
+    for (const auto& [key, child] : node["properties"].items()) {
+      if (value.contains(key)) continue;
+      const bool is_required = completeness_ == Completeness::kResolved
+                                   ? !is_optional(child)
+                                   : std::ranges::count(required, json(key)) > 0;
+      if (!is_required) continue;
+      problems_.push_back(
+          {child_pointer(pointer, key), "found nothing, allowed " + allowed(child)});
+    }
+  }
+
+  Completeness completeness_;
+  std::vector<SchemaProblem> problems_;
+};
 
 ordered_json in_order_of(const ordered_json* node, const json& value) {
   if (!value.is_structured()) return value;
@@ -215,24 +208,31 @@ ordered_json in_order_of(const ordered_json* node, const json& value) {
 
 }  // namespace
 
-void validate(const json& document, Completeness completeness, const Places& places) {
-  validate(document, checker(completeness), places);
+JsonSchema::JsonSchema(json text) : text_(std::move(text)) {
+  expand_references(text_);
+  check_keywords(text_);
 }
 
-void validate(const json& document, const JsonSchema& schema, const Places& places) {
-  const std::vector<JsonSchema::Refusal> refusals = schema.validate(document);
-  if (refusals.empty()) return;
+std::vector<SchemaProblem> JsonSchema::problems(const json& document,
+                                                Completeness completeness) const {
+  Check check(completeness);
+  check.walk("", text_, document);
+  return check.take();
+}
 
-  std::optional<Problem> first;
-  for (const JsonSchema::Refusal& refusal : refusals) {
-    for (const Problem& problem : problems_of(refusal, schema.text(), document)) {
-      if (!first || places.nearest(problem.pointer).line < places.nearest(first->pointer).line) {
-        first = problem;
-      }
-    }
-  }
-  if (!first) first = Problem{"", "refused by the schema: " + refusals.front().reason};
-  throw InputError(places.describe(first->pointer) + ": " + first->text);
+void validate(const json& document, const JsonSchema& schema, const Places& places,
+              Completeness completeness) {
+  const std::vector<SchemaProblem> problems = schema.problems(document, completeness);
+  if (problems.empty()) return;
+  const auto& first = *std::ranges::min_element(problems, {}, [&](const SchemaProblem& problem) {
+    return places.nearest(problem.pointer).line;
+  });
+  throw InputError(places.describe(first.pointer) + ": " + first.text);
+}
+
+void validate(const json& document, Completeness completeness, const Places& places) {
+  static const JsonSchema schema{json(ordered_schema())};
+  validate(document, schema, places, completeness);
 }
 
 ordered_json in_schema_order(const json& document) {
@@ -242,9 +242,7 @@ ordered_json in_schema_order(const json& document) {
 const ordered_json& ordered_schema() {
   static const ordered_json schema = [] {
     auto whole = ordered_json::parse(schema_text());
-    const ordered_json definitions = whole.at("definitions");
-    whole.erase("definitions");
-    expand(whole, definitions);
+    expand_references(whole);
     return whole;
   }();
   return schema;

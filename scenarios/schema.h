@@ -1,10 +1,17 @@
 // Validation against scenarios/schema.json (or another schema of its kind), with messages for
-// people: the validator finds the place, and the schema's own words for that place make the
-// message, "found X, allowed Y".
+// people: one walk finds what is wrong, and the schema's own words for that place make the message,
+// "found X, allowed Y".
+//
+// A schema is JSON Schema (draft-07) of those keywords that the project's schemas use. A keyword
+// that this walk does not heed is a programming error, so that nothing is silently unchecked.
+//
+//   static const JsonSchema schema(nlohmann::json::parse(part_schema_text()));
+//   const PlacedDocument document = parse_placed(text, {.label = "my_part.json"});
+//   validate(document.root, schema, document.places);
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_H_
 
-#include <memory>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,42 +20,43 @@
 
 namespace simbench::scenarios {
 
-// A JSON Schema (draft-07) as a validator. Only schema.cc includes valijson.
-class JsonSchema {
- public:
-  // A value that was refused, and after it the values around it.
-  struct Refusal {
-    std::vector<std::string> keys;  // the way to it: keys and array indices
-    std::string reason;
-  };
-
-  // A schema that valijson does not accept is a programming error.
-  explicit JsonSchema(nlohmann::json text);
-  ~JsonSchema();
-  JsonSchema(const JsonSchema&) = delete;
-  JsonSchema& operator=(const JsonSchema&) = delete;
-
-  const nlohmann::json& text() const { return text_; }
-
-  // All refusals; empty if the document is valid. Types are strict: 1 is not "1". Several threads
-  // may call this.
-  std::vector<Refusal> validate(const nlohmann::json& document) const;
-
- private:
-  struct Compiled;
-  nlohmann::json text_;
-  std::unique_ptr<const Compiled> compiled_;
-};
-
 enum class Completeness {
   kDifferences,  // a file as written: the members that it states must be valid
-  kResolved,     // every property of every object must be there, except those in "x-optional"
+  kResolved,     // every property of every object must be there, but for the optional ones
 };
+
+// Something that a schema refuses: where, and what was found and is allowed.
+struct SchemaProblem {
+  std::string pointer;
+  std::string text;
+};
+
+class JsonSchema {
+ public:
+  explicit JsonSchema(nlohmann::json text);
+
+  // All problems; empty if the document is valid. Linear in the document. Several threads may call
+  // this.
+  std::vector<SchemaProblem> problems(const nlohmann::json& document,
+                                      Completeness completeness = Completeness::kDifferences) const;
+
+ private:
+  nlohmann::json text_;  // with its references resolved
+};
+
+// Whether a property may be left out: it has a default, may be null, or is called "x-optional".
+template <class Json>
+bool is_optional(const Json& node) {
+  if (node.contains("default") || node.value("x-optional", false)) return true;
+  const Json types = node.value("type", Json());
+  return types.is_array() && std::ranges::count(types, Json("null")) > 0;
+}
 
 // Throws InputError about the first line that the schema refuses, scenarios/schema.json or the
 // caller's.
 void validate(const nlohmann::json& document, Completeness completeness, const Places& places);
-void validate(const nlohmann::json& document, const JsonSchema& schema, const Places& places);
+void validate(const nlohmann::json& document, const JsonSchema& schema, const Places& places,
+              Completeness completeness = Completeness::kDifferences);
 
 // What the schema cannot say: throws InputError about the first members that contradict each other.
 // `document` is the scenario as JSON.

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/fields.h"
+#include "scenarios/scenario_json.h"
 
 namespace simbench::scenarios {
 

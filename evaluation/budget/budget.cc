@@ -8,38 +8,14 @@
 #include <utility>
 
 #include "recording/forwarding_sink.h"
+#include "scenarios/ideal.h"
 
 namespace simbench::evaluation {
 namespace {
 
 constexpr const char* kOracle = "oracle";
 
-constexpr double kFinestGranuleUs = 0.001;
-
 bool is_steered(const scenarios::Pipeline& pipeline) { return !pipeline.capture_alignment.empty(); }
-
-void idealise_trigger(scenarios::Trigger& trigger) {
-  trigger.pulse_jitter_sigma_us = 0;
-  trigger.branch_delay_max_us = 0;
-  trigger.cable_delay_max_us = 0;
-  trigger.daisy_chain_delay_us = 0;
-}
-
-void idealise_exposure(scenarios::Cameras& cameras) {
-  cameras.exposure_camera_periods = 0;
-  cameras.exposure_host_periods = 0;
-  cameras.unstable_start_jitter_sigma_ms = 0;
-  cameras.auto_exposure.step_interval_exponential_ms = 0;
-}
-
-// IdealDelivery moves the frames; polls take no time, and there is no delay to calibrate.
-void idealise_delivery(scenarios::Cameras& cameras) {
-  for (scenarios::Stream& stream : cameras.streams) stream.calibrated_delay_ms = 0;
-  const double interval_ms = cameras.clock_poll.interval_ms;
-  cameras.clock_poll = {};
-  cameras.clock_poll.interval_ms = interval_ms;
-  cameras.calibration = {};
-}
 
 template <class Time>
 Time floored(Time time, Nanoseconds quantum) {
@@ -210,30 +186,15 @@ Budget budget_of(const scenarios::Pipeline& pipeline, const WorldScores& scores)
 
 }  // namespace
 
-scenarios::Oscillator perfect_oscillator(const scenarios::Oscillator& oscillator) {
-  return {.wander_step_ms = oscillator.wander_step_ms,
-          .self_heating_time_constant_s = oscillator.self_heating_time_constant_s};
-}
-
 scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
                                    const scenarios::Pipeline& pipeline, StageSet ideal) {
-  scenarios::Scenario world = scenario;
+  std::vector<std::string_view> stages;
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+    if (ideal.has(static_cast<Stage>(stage))) stages.push_back(kStageNames[stage]);
+  }
+  scenarios::Scenario world = scenarios::with_ideal_stages(scenario, stages);
   world.pipelines = {ideal_pipeline(pipeline, ideal)};
   world.published.clear();
-  if (ideal.has(Stage::kTrigger)) idealise_trigger(world.trigger);
-  if (ideal.has(Stage::kExposure)) idealise_exposure(world.cameras);
-  if (ideal.has(Stage::kStampQuantisation)) {
-    world.cameras.sensor_stamp_jitter_sigma_us = 0;
-    world.hosts.clock.arrival_quantum_ms = 0;
-  }
-  if (ideal.has(Stage::kDeviceClock)) {
-    world.cameras.oscillator = perfect_oscillator(world.cameras.oscillator);
-    world.cameras.skew_of_camera_ppm.clear();
-  }
-  if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
-  if (ideal.has(Stage::kGranularity) && world.cameras.frame_control) {
-    world.cameras.frame_control->granularity_us = kFinestGranuleUs;
-  }
   return world;
 }
 

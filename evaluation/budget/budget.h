@@ -12,6 +12,9 @@
 //   host clock          every host reads the master's clock
 //   gathering           sets by the true pulse
 //
+// What of the scenario each stage is, and what it is where the stage is ideal, says
+// scenarios/schema.json (scenarios/ideal.h).
+//
 // A stage's part is its Shapley value: the reduction of the error when the stage is replaced by its
 // oracle, averaged over all orders in which the stages can be replaced, and so over all 2^7 worlds
 // with some of them ideal, each simulated with the same seeds. The parts and the remainder (the
@@ -73,6 +76,7 @@ enum class Stage : std::uint8_t {
 };
 
 inline constexpr std::size_t kStageCount = 8;
+// As the schema of scenarios names them.
 inline constexpr std::array<std::string_view, kStageCount> kStageNames = {
     "trigger",      "exposure",   "stamp quantisation", "device clock",
     "USB delivery", "host clock", "gathering",          "granularity"};
@@ -132,9 +136,6 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
                                   const std::vector<scenarios::Pipeline>& pipelines,
                                   const WorldFactory& make_world, const EvaluationOptions& options,
                                   const Progress& progress);
-
-// Returns an oscillator without any error. What has no effect then stays as it was.
-scenarios::Oscillator perfect_oscillator(const scenarios::Oscillator& oscillator);
 
 }  // namespace simbench::evaluation
 

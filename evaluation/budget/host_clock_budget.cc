@@ -5,95 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <variant>
 
-#include "evaluation/budget/budget.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
+#include "scenarios/ideal.h"
 
 namespace simbench::evaluation {
 namespace {
 
-using scenarios::Fault;
 using scenarios::Pipeline;
 using scenarios::Scenario;
-
-constexpr bool is_ideal(std::size_t ideal, HostClockCause cause) {
-  return (ideal >> static_cast<std::size_t>(cause) & 1U) != 0;
-}
-
-template <class... Kinds>
-void remove_faults(std::vector<Fault>& faults) {
-  std::erase_if(faults,
-                [](const Fault& fault) { return (std::holds_alternative<Kinds>(fault) || ...); });
-}
-
-// The fixed latency, the residence in switches and what has no effect then stay.
-void idealise_network(scenarios::Network& network) {
-  if (!network.latency_quantiles_ms.empty()) {
-    network.latency_fixed_ms = network.latency_quantiles_ms.front();
-    network.latency_quantiles_ms.clear();
-  }
-  network.latency_exponential_ms = 0;
-  network.latency_session_exponential_ms = 0;
-  network.asymmetry_sigma_ms = 0;
-  network.port_asymmetry_sigma_ms = 0;
-  network.spike_probability = 0;
-  network.burst.rate_hz = 0;
-  network.bandwidth_mbit_per_s = 0;  // infinite
-  network.loss_probability = 0;
-  network.duplicate_probability = 0;
-  network.reorder_probability = 0;
-  network.nagle = false;
-  network.delayed_ack_ms = 0;
-  network.capture_traffic_share = 0;
-  network.cross_traffic_share = 0;
-  network.switch_clock_error_ns = 0;
-  network.switch_clock_wander_ppb_per_sqrt_s = 0;
-  network.wifi.reset();
-  for (scenarios::Link& link : network.links) {
-    link.latency_exponential_ms = 0;
-    link.asymmetry_ms = 0;
-  }
-}
-
-void idealise_messages(Scenario& world) {
-  idealise_network(world.network);
-  scenarios::Hosts& hosts = world.hosts;
-  hosts.send_cost_ms = 0;
-  hosts.send_cost_exponential_ms = 0;
-  hosts.send_cost_session_exponential_ms = 0;
-  hosts.receive_wake_up_ms = 0;
-  hosts.load_burst.rate_hz = 0;
-  hosts.stack.reset();
-  hosts.nic.stamp_resolution_ns = 0;
-  hosts.nic.stamp_jitter_sigma_ns = 0;
-  hosts.pulse_lines.pps_jitter_sigma_us = 0;
-  hosts.pulse_lines.interrupt_latency_us = 0;
-  hosts.pulse_lines.interrupt_latency_exponential_us = 0;
-  remove_faults<scenarios::HostStops, scenarios::LinkStops>(world.faults);
-}
-
-void idealise_oscillators(Scenario& world) {
-  scenarios::Hosts& hosts = world.hosts;
-  hosts.clock.oscillator = perfect_oscillator(hosts.clock.oscillator);
-  hosts.clock.skew_of_host_ppm.clear();
-  hosts.nic.skew_sigma_ppm = 0;
-  hosts.temperature.reset();
-  if (hosts.drift_file) hosts.drift_file = scenarios::DriftFile{};  // right, and of now
-  remove_faults<scenarios::ClockStep, scenarios::LeapSecond>(world.faults);
-}
-
-void idealise_clock_calls(scenarios::Hosts& hosts) {
-  hosts.clock.tick_ms = 0;
-  hosts.clock.resolution_ms = 0;
-  hosts.clock.read_cost_ms = 0;
-  hosts.clock.set_cost_ms = 0;
-  hosts.clock.set_cost_session_log_sigma = 0;
-  hosts.clock.set_cost_call_log_sigma = 0;
-  hosts.nic.cross_stamp_cost_ms = 0;
-}
 
 // Why the error of this pipeline's host clocks is not divided; empty if it can be.
 std::string undivided(const Scenario& scenario, const PipelineChoice& choice) {
@@ -172,11 +94,17 @@ void divide_host_clock(ErrorsByWorld& errors, HostClockBudget& budget) {
 }  // namespace
 
 Scenario without_causes(const Scenario& scenario, std::size_t ideal) {
-  Scenario world = scenario;
+  std::vector<std::string_view> causes;
+  for (std::size_t cause = 0; cause < kHostClockCauseCount; ++cause) {
+    if ((ideal >> cause & 1U) != 0) causes.push_back(kHostClockParts[cause].cause);
+  }
+  Scenario world = scenarios::with_ideal_stages(scenario, causes);
   world.published.clear();
-  if (is_ideal(ideal, HostClockCause::kMessages)) idealise_messages(world);
-  if (is_ideal(ideal, HostClockCause::kOscillators)) idealise_oscillators(world);
-  if (is_ideal(ideal, HostClockCause::kClockCalls)) idealise_clock_calls(world.hosts);
+  const std::vector<double>& table_ms = scenario.network.latency_quantiles_ms;
+  // Without the table, the constant latency is the least of it.
+  if (world.network.latency_quantiles_ms.size() < table_ms.size()) {
+    world.network.latency_fixed_ms = table_ms.front();
+  }
   return world;
 }
 

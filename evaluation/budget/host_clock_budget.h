@@ -55,7 +55,7 @@ enum class HostClockCause : std::uint8_t { kMessages, kOscillators, kClockCalls 
 inline constexpr std::size_t kHostClockCauseCount = 3;
 inline constexpr std::size_t kHostClockWorlds = std::size_t{1} << kHostClockCauseCount;
 
-// What a cause's part is called, and the cause.
+// What a cause's part is called, and the cause, as the schema of scenarios names it (x-stage).
 struct HostClockPart {
   std::string_view name;
   std::string_view cause;

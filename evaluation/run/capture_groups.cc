@@ -6,6 +6,7 @@
 
 #include "algorithms/ports/host_sync.h"
 #include "recording/forked_sink.h"
+#include "scenarios/schema_walk.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -27,9 +28,7 @@ bool have_same_capture(const scenarios::Scenario& scenario, const PipelineChoice
 }  // namespace
 
 bool is_scoring_alone(std::string_view pointer) {
-  return pointer.starts_with("/algorithms/") ||
-         pointer == "/evaluation/gathering_interval_periods" ||
-         pointer == "/evaluation/rmdv_median";
+  return scenarios::schema_says("x-scoring", pointer);
 }
 
 CaptureGroups capture_groups(const scenarios::Scenario& scenario,

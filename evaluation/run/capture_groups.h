@@ -33,14 +33,10 @@
 namespace simbench::evaluation {
 
 // Whether a capture depends on this member of the scenario (a JSON pointer) at most through the
-// parameters of its host synchronisation, which capture_groups() compares:
-//
-//   /algorithms/...                          the world has no algorithm but the host_sync that it
-//                                            is given, with its parameters
-//   /evaluation/gathering_interval_periods   read by scorers and gatherers alone
-//   /evaluation/rmdv_median                  read by scorers alone
-//
-// Not /evaluation/stream: the world reports which pulses of that stream count.
+// parameters of its host synchronisation, which capture_groups() compares. The schema says so
+// ("x-scoring" in scenarios/schema.json): the world has no algorithm but the host_sync that it is
+// given, and scorers and gatherers alone read the rest. Not /evaluation/stream: the world reports
+// which pulses of that stream count.
 bool is_scoring_alone(std::string_view pointer);
 
 // The places of the choices that share a capture. Every place once: those of a group in their

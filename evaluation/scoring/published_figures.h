@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
-#include "scenarios/published_figure.h"
+#include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
 

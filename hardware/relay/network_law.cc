@@ -10,6 +10,8 @@
 #include "laws/generators.h"
 #include "scenarios/loader.h"
 #include "scenarios/network_laws.h"
+#include "scenarios/scenario_json.h"
+#include "scenarios/schema_walk.h"
 
 namespace simbench::hardware {
 namespace {
@@ -46,51 +48,31 @@ class NetworkLaw::Draws {
   SplitMix64 generator_;
 };
 
+namespace {
+
+// The value in words, for "found".
+std::string words_of_value(const std::string& pointer, const nlohmann::json& value) {
+  if (value.is_array()) {
+    return fmt::format("{} {}", value.size(), pointer.substr(pointer.rfind('/') + 1));
+  }
+  return value.is_number() ? fmt::format("{}", value.get<double>()) : value.dump();
+}
+
+}  // namespace
+
 void check_relay_can(const scenarios::Scenario& scenario) {
-  const scenarios::Network& network = scenario.network;
-  const auto refuse_unless_zero = [&](const std::string& pointer, double value) {
-    if (value == 0) return;
-    scenarios::fail_at(
-        scenario, pointer,
-        fmt::format("found {}, allowed where a relay imitates the network: 0", value));
-  };
-  refuse_unless_zero("/network/burst/rate_hz", network.burst.rate_hz);
-  refuse_unless_zero("/network/bandwidth_mbit_per_s", network.bandwidth_mbit_per_s);
-  refuse_unless_zero("/network/capture_traffic_share", network.capture_traffic_share);
-  refuse_unless_zero("/network/latency_session_exponential_ms",
-                     network.latency_session_exponential_ms);
-  refuse_unless_zero("/network/port_asymmetry_sigma_ms", network.port_asymmetry_sigma_ms);
-  refuse_unless_zero("/network/switch_residence_ms", network.switch_residence_ms);
-  refuse_unless_zero("/network/cross_traffic_share", network.cross_traffic_share);
-  if (!network.switch_of_host.empty()) {
-    scenarios::fail_at(scenario, "/network/switch_of_host",
-                       "found switches in a line, allowed where a relay imitates the network: one");
-  }
-  if (network.wifi) {
-    scenarios::fail_at(scenario, "/network/wifi",
-                       "found a wireless cell, allowed where a relay imitates the network: none");
-  }
-  if (scenario.hosts.stack) {
-    scenarios::fail_at(scenario, "/hosts/stack",
-                       "found a stack, allowed where a relay imitates the network: none; the nodes "
-                       "have that of their machine");
-  }
-  if (!network.links.empty()) {
-    scenarios::fail_at(scenario, "/network/links",
-                       fmt::format("found {} links, allowed where a relay imitates the network: "
-                                   "none",
-                                   network.links.size()));
-  }
-  if (network.nagle) {
-    scenarios::fail_at(scenario, "/network/nagle",
-                       "found true, allowed where a relay imitates the network: false");
-  }
-  if (network.switch_clock != scenarios::SwitchClockKind::kNone) {
-    scenarios::fail_at(
-        scenario, "/network/switch_clock",
-        fmt::format(R"(found "{}", allowed where a relay imitates the network: "none")",
-                    to_text(network.switch_clock)));
-  }
+  scenarios::for_each_value(
+      "", scenarios::ordered_schema(), scenario,
+      [&scenario](const std::string& pointer, const nlohmann::ordered_json& node,
+                  const nlohmann::json& value) {
+        if (!node.contains("x-relay") || node["x-relay"] == "any") return;
+        const nlohmann::json relay = node["x-relay"];
+        if (value == relay.at("only")) return;
+        scenarios::fail_at(scenario, pointer,
+                           fmt::format("found {}, allowed where a relay imitates the network: {}",
+                                       relay.value("found", words_of_value(pointer, value)),
+                                       relay.value("allowed", relay.at("only").dump())));
+      });
 }
 
 NetworkLaw::NetworkLaw(const scenarios::Network& network, std::uint64_t seed, PeerId from,

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/fields.h"
+#include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
 #include "tests/nonempty.h"
 #include "tests/scenarios/support.h"
@@ -33,13 +33,13 @@ TEST(OscillatorClasses, AreWhatTheirSchemaAsksFor) {
   const JsonSchema schema(json::parse(oscillator_schema_text()));
   for (const BuiltinFile& file : nonempty(oscillator_files())) {
     const json profile = json::parse(file.text);
-    const auto refusals = schema.validate(profile);
-    EXPECT_TRUE(refusals.empty()) << file.name << ": " << refusals.front().reason;
+    const auto problems = schema.problems(profile);
+    EXPECT_TRUE(problems.empty()) << file.name << ": " << problems.front().text;
     EXPECT_EQ(profile["class"], file.name);
   }
   json broken = json::parse(oscillator_files().front().text);
   broken["values"]["skew_sigma_ppm"].erase("source");
-  EXPECT_FALSE(schema.validate(broken).empty());
+  EXPECT_FALSE(schema.problems(broken).empty());
 }
 
 TEST(OscillatorClasses, ValuesAreMembersOfAnOscillator) {

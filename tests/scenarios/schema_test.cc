@@ -1,136 +1,82 @@
-// Schema, structs and the list of fields between them say the same.
+// The schema, what is made from it, and what it is checked with.
 #include "scenarios/schema.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/document.h"
-#include "scenarios/fields.h"
 #include "scenarios/loader.h"
+#include "scenarios/part.h"
+#include "scenarios/scenario_json.h"
+#include "scenarios/schema_references.h"
+#include "scenarios/schema_walk.h"
 #include "scenarios/study.h"
-#include "tests/scenarios/support.h"
+#include "tests/nonempty.h"
 
 namespace simbench::scenarios {
 namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+using testing::IsEmpty;
 
-// A scenario that uses everything that may be left empty.
-json full_document() {
-  const std::string law =
-      R"({"fixed_us": 1, "exponential_us": 1, "quantiles_us": [1, 2], "spike_probability": 0,
-          "spike_max_us": 1, "common_share": 0, "common_time_ms": 1})";
-  const std::string text = derived(R"("faults": [
-      {"kind": "camera_vanishes", "camera": 1, "at_ms": 1, "duration_ms": 2},
-      {"kind": "clock_step", "host": 1, "at_ms": 3, "step_ms": 4},
-      {"kind": "leap_second", "at_ms": 5, "smear_ms": 20000, "inserted": true}],
-    "trigger": {"pauses": [{"at_ms": 5, "duration_ms": 6}]},
-    "hosts": {"master_is_exact": true,
-              "temperature": {"day_amplitude_k": 1, "day_period_h": 24, "load_amplitude_k": 1,
-                              "load_period_s": 100, "load_time_constant_s": 10,
-                              "fan_amplitude_k": 1, "fan_period_s": 10},
-              "drift_file": {"age_h": 1, "error_ppb": 2},
-              "stack": {"transmit": )" +
-                                   law + R"(, "transmit_to_card": )" + law + R"(,
-                        "receive": )" +
-                                   law + R"(, "wake_up": )" + law + R"(,
-                        "interrupt_moderation_us": 1, "interrupts_per_s": 1, "sleep_share": 0,
-                        "sleep_exit_us": 1, "awake_us": 1, "sleep_time_ms": 1,
-                        "speed_log_sigma": 1},
-              "clock": {"oscillator": {"class": "tcxo"},
-                        "skew_of_host_ppm": [0,1,2,3,4,5],
-                        "initial_offset_of_host_ms": [0,1,2,3,4,5]}},
-    "network": {"port_asymmetry_sigma_ms": 0.01, "switch_of_host": [0,0,0,1,1,1],
-                "bandwidth_mbit_per_s": 1000, "switch_residence_ms": 0.001,
-                "cross_traffic_share": 0, "switch_clock_wander_ppb_per_sqrt_s": 1,
-                "links": [{"host": 1, "latency_fixed_ms": 1, "latency_exponential_ms": 2,
-                           "asymmetry_ms": 0.5}]},
-    "usb": {"delivery_quantiles_ms": [0, 0.3], "delivery_correlation": 0.1},
-    "cameras": {"oscillator": {"class": "ocxo"}, "host_of_camera": [0,0,0, 1,1,1, 2,2,2, 3,3,3, 4,4,4, 5,5,5],
-                "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3],
-                "stamp_clock": "host",
-                "frame_control": {
-                  "adjust_frame": true, "insert_frame": true, "frame_length": true,
-                  "start_at": true, "granularity_us": 10, "shortest_ms": 5, "longest_ms": 50,
-                  "latency_frames": 2, "delay_ms": 1, "delay_exponential_ms": 1,
-                  "loss_probability": 0, "insert_stretches": 1, "insert_noise_sigma_us": 1,
-                  "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1,
-                  "sensor_clock": "camera"}},
-    "studio": )" + studio_of("18cam_6host_30fps_studio"));
-  json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
-  // Beside which there is no wireless cell, and no link has a latency of its own, which only the
-  // checks say.
-  document["network"]["wifi"] = {
-      {"access_point_host", 0},
-      {"wired_hosts", {5}},
-      {"rate_mbit_per_s", 54},
-      {"basic_rate_mbit_per_s", 6},
-      {"preamble_us", 20},
-      {"sifs_us", 16},
-      {"slot_us", 9},
-      {"contention_window_min", 15},
-      {"contention_window_max", 1023},
-      {"retry_limit", 7},
-      {"collision_probability", 0},
-      {"busy", {{"rate_hz", 0.1}, {"duration_exponential_ms", 100}, {"latency_ms", 20}}},
-      {"power_save",
-       {{"idle_ms", 100}, {"beacon_interval_ms", 102.4}, {"dtim_period", 1}, {"wake_up_ms", 2}}}};
-  document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
-  // A figure has one of the three numbers, which only the checks say.
-  const json figure = {{"pipeline", "yoon2021_both"},
-                       {"metric", "amd_ms"},
-                       {"at_most", 2},
-                       {"value", 1},
-                       {"at_least", 0},
-                       {"conditions", "a rig"},
-                       {"source", "a paper"}};
-  document["published_figures"] = json::array({figure});
-  json& stream = document["cameras"]["streams"][0];
-  stream["calibrated_delay_ms"] = 10.5;
-  stream["calibrated_at"] = {{"width", 848}, {"height", 480}, {"mode_rate_hz", 30}};
-  json& polls = document["cameras"]["clock_poll"];
-  polls["calibrated_asymmetry_ms"] = 0.25;
-  polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
-  document["cameras"]["led_clock"] = {{"interval_ms", 200},      {"first_ms", 1000},
-                                      {"last_ms", 1000},         {"step_ms", 1},
-                                      {"missed_probability", 0}, {"wrong_probability", 0},
-                                      {"skew_sigma_ppm", 20},    {"row_spread_share", 0}};
-  document["pipelines"][0]["capture_alignment"] = "free_run";
-  document["pipelines"][0]["host_sync"] = {
-      {"program",
-       {{"master", json::array({json::array({"chronyd", "-d"})})},
-        {"slave", json::array({json::array({"chronyd", "-d"})})},
-        {"files", {{"a.conf", "local"}}},
-        {"environment", {{"A", "b"}}},
-        {"run_before_capture_s", 60},
-        {"run_during_capture", false},
-        {"model", "chrony"}}}};
-  return document;
+bool has_type(const ordered_json& node, const char* name) {
+  const ordered_json type = node.value("type", ordered_json());
+  return type == name || (type.is_array() && std::ranges::count(type, ordered_json(name)) > 0);
 }
 
-// The pointers of the leaves that the schema knows, elements written as "0".
-void collect_leaves(const std::string& pointer, const ordered_json& node,
-                    std::set<std::string>& leaves) {
-  if (node.contains("properties")) {
-    for (const auto& [key, child] : node["properties"].items()) {
-      collect_leaves(child_pointer(pointer, key), child, leaves);
+json example_of(const ordered_json& node);
+
+// One fault of each kind, with the members that it needs.
+json examples_of_kinds(const ordered_json& node) {
+  json elements = json::array();
+  for (const auto& [kind, of_kind] : node["x-kinds"].items()) {
+    json element = {{"kind", kind}};
+    for (const ordered_json& key : of_kind["needs"]) {
+      const auto member = key.get<std::string>();
+      element[member] = example_of(node["properties"][member]);
     }
-  } else if (node.contains("items")) {
-    collect_leaves(pointer + "/0", node["items"], leaves);
-  } else if (!node.contains("additionalProperties")) {
-    leaves.insert(pointer);
+    elements.push_back(std::move(element));
   }
+  return elements;
+}
+
+// A value that states everything of which the schema knows.
+json example_of(const ordered_json& node) {
+  if (node.contains("enum")) return node["enum"][0];
+  if (node.contains("properties")) {
+    json object = json::object();
+    for (const auto& [key, child] : node["properties"].items()) object[key] = example_of(child);
+    return object;
+  }
+  if (has_type(node, "object")) return {{"a", example_of(node["additionalProperties"])}};
+  if (has_type(node, "array")) {
+    if (node["items"].contains("x-kinds")) return examples_of_kinds(node["items"]);
+    return json::array({example_of(node["items"])});
+  }
+  if (has_type(node, "boolean") && !has_type(node, "number")) return false;
+  if (has_type(node, "string") && !has_type(node, "number")) return "a";
+  const double least = node.value("minimum", 0.0);
+  const double most = node.value("maximum", 1.0);
+  const double number = std::clamp(1.0, least, most);
+  return has_type(node, "integer") ? json(static_cast<std::int64_t>(number)) : json(number);
+}
+
+// A scenario that states everything.
+json full_document() {
+  json document = example_of(ordered_schema());
+  document.erase("$schema");
+  document.erase("base");
+  return document;
 }
 
 template <class Visit>
@@ -158,45 +104,24 @@ json changed(const json& value, const ordered_json& node) {
   return node["enum"][0].get<std::string>() == word ? node["enum"][1] : node["enum"][0];
 }
 
-// What the schema says of a leaf.
-const ordered_json& schema_at(const std::string& leaf) {
-  std::vector<std::string> keys;
-  for (json::json_pointer rest(leaf); !rest.empty(); rest.pop_back()) keys.push_back(rest.back());
-  const ordered_json* node = &ordered_schema();
-  for (; !keys.empty(); keys.pop_back()) node = schema_of_child(*node, keys.back());
-  return *node;
-}
-
-// The members of a fault are stated by faults of different kinds.
-std::string stated_place(const std::string& leaf) {
-  const std::map<std::string, std::string> others = {{"/faults/0/host", "/faults/1/host"},
-                                                     {"/faults/0/step_ms", "/faults/1/step_ms"},
-                                                     {"/faults/0/smear_ms", "/faults/2/smear_ms"},
-                                                     {"/faults/0/inserted", "/faults/2/inserted"}};
-  const auto found = others.find(leaf);
-  return found == others.end() ? leaf : found->second;
-}
-
 TEST(SchemaDrift, EveryLeafOfTheSchemaReachesTheStruct) {
-  std::set<std::string> leaves;
-  collect_leaves("", ordered_schema(), leaves);
-  leaves.erase("/$schema");
-  leaves.erase("/base");
-  leaves.erase("/schema_version");
-  leaves.erase("/faults/0/kind");  // which decides what the other members are
-  ASSERT_GT(leaves.size(), 100U);
-
   const json original = full_document();
   const json before = original.get<Scenario>();
-  for (const std::string& leaf : leaves) {
-    const std::string pointer = stated_place(leaf);
-    json document = original;
-    json& value = document.at(json::json_pointer(pointer));
-    value = changed(value, schema_at(leaf));
-    const json after = document.get<Scenario>();
-    EXPECT_EQ(json::diff(before, after).size(), 1U) << pointer;
-    EXPECT_EQ(after.at(json::json_pointer(pointer)), value) << pointer;
-  }
+  std::size_t leaves = 0;
+  for_each_value("", ordered_schema(), original,
+                 [&](const std::string& pointer, const ordered_json& node, const json& value) {
+                   // The kind of a fault decides what its other members are.
+                   if (value.is_structured() || pointer == "/schema_version") return;
+                   if (pointer.starts_with("/faults/") && pointer.ends_with("/kind")) return;
+                   ++leaves;
+                   json document = original;
+                   const json other = changed(value, node);
+                   document.at(json::json_pointer(pointer)) = other;
+                   const json after = document.get<Scenario>();
+                   EXPECT_EQ(json::diff(before, after).size(), 1U) << pointer;
+                   EXPECT_EQ(after.at(json::json_pointer(pointer)), other) << pointer;
+                 });
+  EXPECT_GT(leaves, 250U);
 }
 
 TEST(SchemaDrift, EveryMemberOfTheStructIsInTheSchema) {
@@ -205,101 +130,22 @@ TEST(SchemaDrift, EveryMemberOfTheStructIsInTheSchema) {
   EXPECT_NO_THROW(validate(written, Completeness::kResolved, Places()));
 }
 
-// Converts to anything: how many of it an aggregate takes is the number of its members.
-struct Anything {
-  template <class T>
-  operator T() const {  // NOLINT(google-explicit-constructor): implicit is what it is for
-    std::abort();       // only its type is ever asked for
-  }
-};
-
-template <class T, class... Members>
-constexpr std::size_t member_count() {
-  if constexpr (requires { T{std::declval<Members>()..., std::declval<Anything>()}; }) {
-    return member_count<T, Members..., Anything>();
-  } else {
-    return sizeof...(Members);
-  }
-}
-
-template <class T>
-void expect_all_members_written() {
-  EXPECT_EQ(json(T{}).size(), member_count<T>()) << typeid(T).name();
-}
-
-// Beside its kind.
-template <class Kind>
-void expect_all_members_of_fault_written() {
-  EXPECT_EQ(json(Fault(Kind{})).size(), 1 + member_count<Kind>()) << Kind::kKind;
-}
-
-TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
-  expect_all_members_written<Timeline>();
-  expect_all_members_written<Oscillator>();
-  expect_all_members_written<LastSet>();
-  expect_all_members_written<Temperature>();
-  expect_all_members_written<DriftFile>();
-  expect_all_members_written<HostClock>();
-  expect_all_members_written<DelayLaw>();
-  expect_all_members_written<Stack>();
-  expect_all_members_written<Hosts>();
-  expect_all_members_written<Burst>();
-  expect_all_members_written<Link>();
-  expect_all_members_written<WifiPowerSave>();
-  expect_all_members_written<Wifi>();
-  expect_all_members_written<Network>();
-  expect_all_members_written<TriggerPause>();
-  expect_all_members_written<Trigger>();
-  expect_all_members_written<StreamMode>();
-  expect_all_members_written<Stream>();
-  expect_all_members_written<PollDelays>();
-  expect_all_members_written<ClockPoll>();
-  expect_all_members_written<CalibrationError>();
-  expect_all_members_written<LedClockModel>();
-  expect_all_members_written<FrameControlModel>();
-  expect_all_members_written<BackendStamp>();
-  expect_all_members_written<Cameras>();
-  expect_all_members_written<Usb>();
-  expect_all_members_written<HostPrograms>();
-  expect_all_members_written<Evaluation>();
-  expect_all_members_written<Published>();
-  expect_all_members_written<PublishedFigure>();
-  expect_all_members_written<StudioSubject>();
-  expect_all_members_written<PublishedReprojection>();
-  expect_all_members_written<Studio>();
-  const auto expect_all = []<class... Kinds>(const std::variant<Kinds...>&) {
-    (expect_all_members_of_fault_written<Kinds>(), ...);
-  };
-  expect_all(Fault{});
-  constexpr std::size_t kNotInTheFile = 3;  // derivation, resolved_json, origin
-  EXPECT_EQ(json(Scenario{}).size(), member_count<Scenario>() - kNotInTheFile);
-}
-
-TEST(SchemaDrift, ChoicesHaveTheWordsOfTheSchema) {
-  std::map<std::string, std::vector<std::string>> words = {
-      {"/network/stamp_point", all_texts<StampPoint>()},
-      {"/network/switch_clock", all_texts<SwitchClockKind>()},
-      {"/cameras/sync_mode", all_texts<SyncMode>()},
-      {"/cameras/streams/*/kind", all_texts<StreamKind>()},
-      {"/cameras/streams/*/shutter", all_texts<ShutterKind>()},
-      {"/cameras/stamp_clock", all_texts<ClockOwner>()},
-      {"/cameras/frame_control/sensor_clock", all_texts<ClockOwner>()},
-      {"/usb/sharing", all_texts<UsbSharing>()},
-      {"/evaluation/stream", all_texts<StreamKind>()},
-      {"/evaluation/table", all_texts<TableKind>()},
-      {"/evaluation/rmdv_median", all_texts<MedianKind>()},
-      {"/studio/subject/kind", all_texts<SubjectKind>()},
-      {"/studio/subject/motion", all_texts<MotionScript>()}};
-  const auto add_kinds = [&words]<class... Kinds>(const std::variant<Kinds...>&) {
-    words["/faults/*/kind"] = {std::string(Kinds::kKind)...};
-  };
-  add_kinds(Fault{});
-  std::map<std::string, std::vector<std::string>> in_schema;
-  for_each_leaf_schema("", ordered_schema(),
-                       [&](const std::string& pointer, const ordered_json& node) {
-                         if (node.contains("enum")) node["enum"].get_to(in_schema[pointer]);
-                       });
-  EXPECT_EQ(words, in_schema);
+// A member that is not stated has the schema's default.
+TEST(SchemaDrift, DefaultsAreThoseOfTheSchema) {
+  std::size_t defaults = 0;
+  for_each_value("", ordered_schema(), full_document(),
+                 [&](const std::string& pointer, const ordered_json& node, const json&) {
+                   if (!node.contains("default")) return;
+                   ++defaults;
+                   json document = full_document();
+                   const json::json_pointer at(pointer);
+                   document.at(at.parent_pointer()).erase(at.back());
+                   const json without = document.get<Scenario>();
+                   document.at(at.parent_pointer())[at.back()] = node["default"];
+                   if (node["default"] == ordered_json::object()) return;  // has its own defaults
+                   EXPECT_EQ(without, json(document.get<Scenario>())) << pointer;
+                 });
+  EXPECT_GT(defaults, 10U);
 }
 
 TEST(SchemaDrift, TablesOfStudiesHaveTheWordsOfTheirSchema) {
@@ -350,31 +196,96 @@ TEST(Schema, ObjectsAreClosed) {
   EXPECT_EQ(closed, objects);
 }
 
-TEST(Schema, EveryPropertyIsRequiredOfAResolvedScenario) {
-  const json original = full_document();
-  std::set<std::string> leaves;
-  collect_leaves("", ordered_schema(), leaves);
+// Erases each property below the value in turn and expects the message.
+std::size_t expect_all_required(const std::string& pointer, const ordered_json& node,
+                                const json& value, const json& original) {
   std::size_t required = 0;
-  for (const std::string& leaf : leaves) {
-    if (leaf == "/$schema" || leaf == "/base" || leaf.starts_with("/faults/0/")) continue;
+  if (value.is_structured()) {
+    for (const auto& [key, member] : value.items()) {
+      const ordered_json* const child = schema_of_child(node, key);
+      required += expect_all_required(child_pointer(pointer, key), *child, member, original);
+    }
+  }
+  if (!value.is_object() || !node.contains("properties")) return required;
+  for (const auto& [key, child] : node["properties"].items()) {
+    if (is_optional(child) || !value.contains(key)) continue;
     json document = original;
-    const json::json_pointer pointer(leaf);
-    if (pointer.back() == "0") continue;  // an element of an array
-    const auto optional = schema_at(pointer.parent_pointer().to_string())
-                              .value("x-optional", std::vector<std::string>());
-    if (std::ranges::find(optional, pointer.back()) != optional.end()) continue;
-    document.at(pointer.parent_pointer()).erase(pointer.back());
+    document.at(json::json_pointer(pointer)).erase(key);
     ++required;
+    const std::string missed = child_pointer(pointer, key);
     try {
       validate(document, Completeness::kResolved, Places());
-      ADD_FAILURE() << leaf << " was not missed";
+      ADD_FAILURE() << missed << " was not missed";
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(leaf + ": found nothing, allowed "),
+      EXPECT_NE(std::string(error.what()).find(missed + ": found nothing, allowed "),
                 std::string::npos)
           << error.what();
     }
   }
-  EXPECT_GT(required, 100u);
+  return required;
+}
+
+TEST(Schema, EveryPropertyIsRequiredOfAResolvedScenario) {
+  const json original = full_document();
+  EXPECT_GT(expect_all_required("", ordered_schema(), original, original), 200U);
+}
+
+// What a schema says and nobody heeds would be unchecked.
+TEST(Schema, AKeywordThatNobodyHeedsStopsTheProgram) {
+  EXPECT_DEATH(JsonSchema(json{{"type", "number"}, {"multipleOf", 2}}), "keywords");
+  EXPECT_DEATH(JsonSchema(json{{"properties", {{"a", {{"minimun", 2}}}}}}), "keywords");
+  EXPECT_DEATH(JsonSchema(json{{"items", {{"x-stag", "none"}}}}), "keywords");
+}
+
+TEST(Schema, TheProjectsSchemasHaveOnlyKeywordsThatAreHeeded) {
+  for (const std::string_view text : {schema_text(), camera_schema_text(), oscillator_schema_text(),
+                                      part_schema_text(), study_schema_text()}) {
+    const JsonSchema schema(json::parse(text));
+    EXPECT_FALSE(schema.problems(json::object()).empty());
+  }
+}
+
+// Each keyword on its own: a value at the edge, and one beyond it.
+TEST(Schema, EveryKeywordIsHeeded) {
+  struct Case {
+    json schema;
+    json good;
+    json bad;
+  };
+  const std::vector<Case> cases = {
+      {{{"type", "number"}, {"minimum", 1}, {"maximum", 2}}, 1, 0.999},
+      {{{"type", "number"}, {"minimum", 1}, {"maximum", 2}}, 2, 2.001},
+      {{{"type", "number"}, {"exclusiveMinimum", 1}, {"maximum", 2}}, 1.001, 1},
+      {{{"type", "number"}}, 1, "1"},
+      {{{"type", "integer"}}, 1, 1.5},
+      {{{"type", "boolean"}}, true, 1},
+      {{{"type", "string"}}, "", 0},
+      {{{"type", "array"}}, json::array(), json::object()},
+      {{{"type", {"object", "null"}}}, nullptr, json::array()},
+      {{{"type", "string"}, {"minLength", 2}, {"maxLength", 3}}, "ab", "a"},
+      {{{"type", "string"}, {"minLength", 2}, {"maxLength", 3}}, "\u00e4\u00e4\u00e4", "abcd"},
+      {{{"type", "string"}, {"pattern", "^[a-z]+$"}}, "ab", "a1"},
+      {{{"enum", {"a", 1}}}, 1, "b"},
+      {{{"type", "array"}, {"minItems", 1}, {"maxItems", 2}}, {1}, json::array()},
+      {{{"type", "array"}, {"minItems", 1}, {"maxItems", 2}}, {1, 2}, {1, 2, 3}},
+      {{{"type", "array"}, {"uniqueItems", true}}, {1, 2}, {1, 1}},
+      {{{"type", "array"}, {"items", {{"type", "integer"}}}}, {1}, {1, "a"}},
+      {{{"type", "object"}, {"maxProperties", 1}}, {{"a", 1}}, {{"a", 1}, {"b", 1}}},
+      {{{"type", "object"}, {"properties", {{"a", {{"type", "integer"}}}}}},
+       {{"a", 1}},
+       {{"a", ""}}},
+      {{{"properties", {{"a", json::object()}}}, {"required", {"a"}}}, {{"a", 1}}, {{"b", 1}}},
+      {{{"properties", {{"a", json::object()}}}, {"additionalProperties", false}},
+       {{"a", 1}},
+       {{"b", 1}}},
+      {{{"type", "object"}, {"additionalProperties", {{"type", "integer"}}}},
+       {{"a", 1}},
+       {{"a", ""}}}};
+  for (const Case& each : nonempty(cases)) {
+    const JsonSchema schema(each.schema);
+    EXPECT_THAT(schema.problems(each.good), IsEmpty()) << each.schema;
+    EXPECT_EQ(schema.problems(each.bad).size(), 1U) << each.schema;
+  }
 }
 
 TEST(Schema, KeepsItsOrder) {

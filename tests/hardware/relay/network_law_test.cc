@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "scenarios/loader.h"
+#include "scenarios/schema.h"
 
 namespace simbench::hardware {
 namespace {
@@ -209,6 +211,26 @@ TEST(NetworkLaw, WhatARelayCannotImitateIsRefused) {
               HasSubstr("found a wireless cell"));
   EXPECT_THAT(law_refusal("/network/switch_of_host", "[0, 0, 0, 1, 1, 1]"),
               HasSubstr("allowed where a relay imitates the network: one"));
+}
+
+// Counts the members below that say nothing; what an object says holds for its members.
+std::size_t silent_members(const nlohmann::ordered_json& node) {
+  if (node.contains("x-relay")) {
+    const nlohmann::ordered_json& relay = node["x-relay"];
+    EXPECT_TRUE(relay == "any" || relay.contains("only")) << node;
+    return 0;
+  }
+  if (!node.contains("properties")) return 1;
+  std::size_t silent = 0;
+  for (const auto& [key, child] : node["properties"].items()) silent += silent_members(child);
+  return silent;
+}
+
+TEST(NetworkLaw, EveryMemberOfTheNetworkSaysWhetherARelayCanCarryIt) {
+  const nlohmann::ordered_json& network =
+      scenarios::ordered_schema().at("properties").at("network");
+  ASSERT_GT(network.at("properties").size(), 20U);
+  EXPECT_EQ(silent_members(network), 0U);
 }
 
 }  // namespace
