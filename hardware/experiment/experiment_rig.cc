@@ -80,7 +80,7 @@ std::string on_command(const TemporaryFolder& folder) {
 }  // namespace
 
 std::vector<ClockStart> draw_clock_starts(const scenarios::Scenario& scenario, std::uint64_t seed) {
-  const scenarios::HostClock& clock = scenario.hosts.clock;
+  const scenarios::HostClockModel& clock = scenario.hosts.clock;
   std::vector<ClockStart> starts;
   for (std::int64_t host = 0; host < scenario.hosts.count; ++host) {
     boost::random::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(host));
@@ -167,7 +167,7 @@ std::string ExperimentRig::rig_text(std::optional<unsigned> node) const {
 
 void ExperimentRig::start_node(unsigned node, const std::string& file) {
   const ClockStart& clock = settings_.clocks.at(node);
-  const scenarios::HostClock& interface = settings_.scenario->hosts.clock;
+  const scenarios::HostClockModel& interface = settings_.scenario->hosts.clock;
   const std::string name = fmt::format("host{}", node);
   std::vector<std::string> arguments = {
       "node",

@@ -67,7 +67,7 @@ class ClockPort final : public HostClock {
     VirtualContext& context;
     SystemClock& clock;
     Cpu& cpu;
-    const scenarios::HostClock& parameters;
+    const scenarios::HostClockModel& parameters;
   };
 
   // All parts must outlive the port. `draws` is for the factors of the calls; `host_name` labels

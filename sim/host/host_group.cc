@@ -21,7 +21,7 @@ std::string host_component(std::size_t host, const char* what) {
 }
 
 // The offset of a slave's clock before synchronisation.
-double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
+double offset_ms(const scenarios::HostClockModel& clock, std::uint64_t run_seed,
                  InitialClocks initial_clocks, std::size_t host, double skew_against_master) {
   if (initial_clocks == InitialClocks::kLastSet) {
     RandomStream draw(run_seed, host_component(host, "clock since the last set"));

@@ -24,7 +24,7 @@ constexpr std::size_t kFramesKept = 1024;
 std::string host_name(PeerId id) { return "host" + std::to_string(id); }
 
 ClockInterface interface_of(const HostWorld& world, PeerId id) {
-  const scenarios::HostClock& clock = world.hosts.clock;
+  const scenarios::HostClockModel& clock = world.hosts.clock;
   RandomStream draw(world.run_seed, host_name(id) + ": tick phase");
   return ClockInterface(from_ms(clock.tick_ms), from_ms(draw.uniform(0, clock.tick_ms)),
                         from_ms(clock.resolution_ms));

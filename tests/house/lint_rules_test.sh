@@ -53,10 +53,17 @@ struct Local {
 struct Outcome : Base {
 };
 FILE
-expect type_names.awk sim/rig/camera.h sim/lane.h hardware/camera.h app/local.cc hardware/local.cc <<'FOUND'
+mkdir scenarios
+cat > scenarios/schema.json <<'FILE'
+{"x-type": "Frame",
+ "x-type": "Cable", "x-types": "Kind"}
+FILE
+expect type_names.awk sim/rig/camera.h sim/lane.h hardware/camera.h app/local.cc hardware/local.cc \
+  scenarios/schema.json <<'FOUND'
 app/local.cc:2: Kind names a type of another folder too (sim/rig/camera.h:2): a name means one thing
 hardware/camera.h:1: Camera names a type of another folder too (sim/rig/camera.h:3): a name means one thing
 hardware/local.cc:3: Outcome names a type of another folder too (sim/rig/camera.h:6): a name means one thing
+scenarios/schema.json:1: Frame names a type of another folder too (hardware/camera.h:5): a name means one thing
 FOUND
 
 cat > text.cc <<'FILE'
