@@ -47,7 +47,7 @@ struct Header {
 };
 
 // A place in the text, for messages.
-struct Place {
+struct CsvPlace {
   const std::string& path;
   std::size_t line = 0;
 
@@ -90,7 +90,7 @@ bool is_required(const CsvColumns& columns, CsvField field, bool usual) {
 
 // Nothing if it is no header.
 std::optional<Header> parse_header(const std::vector<std::string_view>& cells,
-                                   const CsvColumns& columns, bool usual, const Place& place) {
+                                   const CsvColumns& columns, bool usual, const CsvPlace& place) {
   Header header;
   header.cells = cells.size();
   header.position.fill(kAbsent);
@@ -162,7 +162,8 @@ std::optional<std::string> shifted(std::string_view text, int exponent) {
   return (negative ? "-" : "") + (digits.empty() ? "0" : digits) + "." + fraction + "0";
 }
 
-Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column, const Place& place) {
+Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column,
+                     const CsvPlace& place) {
   std::optional<Nanoseconds> stamp;
   if (column.exponent == 0) {
     stamp = parse_ms(cell, kLargestStampMs);
@@ -174,7 +175,7 @@ Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column, co
              (column.exponent == 0 ? "milliseconds up to 4e12" : "its unit, up to 126 years"));
 }
 
-std::uint64_t counter_of(std::string_view cell, const std::string& column, const Place& place) {
+std::uint64_t counter_of(std::string_view cell, const std::string& column, const CsvPlace& place) {
   std::uint64_t counter = 0;
   const auto [stop, error] = std::from_chars(cell.data(), cell.data() + cell.size(), counter);
   if (error != std::errc() || stop != cell.data() + cell.size()) {
@@ -227,7 +228,7 @@ class CsvRecordingReader::File {
 
   CsvRecordingReader& reader_;
   const CsvColumns& columns_;
-  Place place_;
+  CsvPlace place_;
   std::string name_;
   std::optional<Header> header_;
   bool preamble_ = false;

@@ -303,7 +303,7 @@ void merge(const std::string& pointer, const json& patch, const Places& patch_pl
 }
 
 // A scenario as one of its files leaves it, before later files and overrides.
-struct Stage {
+struct SourceLayer {
   std::size_t level = 0;
   bool is_builtin = false;
   json document;
@@ -314,13 +314,14 @@ struct Stage {
 struct Resolved {
   json document;  // complete and valid by the schema; without "base" and "$schema"
   std::shared_ptr<Places> places = std::make_shared<Places>();
-  std::vector<Stage> stages{};  // the most basic one first
+  std::vector<SourceLayer> stages{};  // the most basic one first
   Derivation derivation{};
 
   // As the file of that level leaves it; null: a --set does, so it is the resolved scenario.
-  const Stage* stage_of(std::size_t level) const {
-    const auto found = std::find_if(stages.begin(), stages.end(),
-                                    [level](const Stage& stage) { return stage.level == level; });
+  const SourceLayer* stage_of(std::size_t level) const {
+    const auto found =
+        std::find_if(stages.begin(), stages.end(),
+                     [level](const SourceLayer& stage) { return stage.level == level; });
     return found == stages.end() ? nullptr : &*found;
   }
 };
@@ -331,7 +332,7 @@ constexpr const char* kFigures = "published_figures";
 // stages that it has there. Notes in the derivation that one does not for the sake of its world.
 bool holds(const std::string& name, const std::string& pointer, Resolved& resolved) {
   const std::size_t level = resolved.places->latest_level(pointer);
-  const Stage* const stage = resolved.stage_of(level);
+  const SourceLayer* const stage = resolved.stage_of(level);
   const json* const pipeline = find_pipeline(resolved.document, name);
   if (pipeline == nullptr) return level >= resolved.places->latest_level("/pipelines");
   if (stage == nullptr) return true;
@@ -420,7 +421,7 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
   if (!resolved.stages.back().is_builtin || !overrides.empty()) {
     validate(resolved.document, Completeness::kResolved, *resolved.places);
   }
-  for (Stage& stage : resolved.stages) {
+  for (SourceLayer& stage : resolved.stages) {
     const bool is_all = &stage == &resolved.stages.back() && overrides.empty();
     stage.same_world = is_all || same_world(stage.document, resolved.document);
   }
@@ -476,8 +477,9 @@ void set_changes(const json& base, Resolved& resolved) {
 
 // Sets what the scenario rests on (derivation.h).
 void derive(Resolved& resolved) {
-  const auto nearest_builtin = std::find_if(resolved.stages.rbegin(), resolved.stages.rend(),
-                                            [](const Stage& stage) { return stage.is_builtin; });
+  const auto nearest_builtin =
+      std::find_if(resolved.stages.rbegin(), resolved.stages.rend(),
+                   [](const SourceLayer& stage) { return stage.is_builtin; });
   if (nearest_builtin != resolved.stages.rend()) {
     return set_changes(nearest_builtin->document, resolved);
   }
@@ -499,7 +501,7 @@ Lazy<std::string> text_of(json scenario) {
 
 // Replaces a summary that was written for another world.
 void renew_summary(Resolved& resolved, Scenario& scenario) {
-  const Stage* const stage = resolved.stage_of(resolved.places->nearest("/summary").level);
+  const SourceLayer* const stage = resolved.stage_of(resolved.places->nearest("/summary").level);
   if (stage == nullptr || stage->same_world) return;
   scenario.summary = world_text(scenario);
   resolved.document["summary"] = scenario.summary;

@@ -153,7 +153,7 @@ class Adviser {
     const auto largest = std::ranges::max_element(parts.stages, {}, &BudgetPart::mean);
     advice_.fails_first = {.metric = is_error ? "absolute error" : "AMD",
                            .stage = std::string(stage_name(
-                               budget, static_cast<Stage>(largest - parts.stages.begin()))),
+                               budget, static_cast<BudgetStage>(largest - parts.stages.begin()))),
                            .share = largest->mean / parts.total.mean};
   }
 

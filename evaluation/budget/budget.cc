@@ -63,14 +63,14 @@ bool delivery_is_scoring_alone(const scenarios::Cameras& cameras) {
 // together, so that they share what they can of the world of the first.
 std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scenario,
                                                  std::size_t all) {
-  std::vector<Stage> within = {Stage::kGathering, Stage::kHostClock};
-  if (delivery_is_scoring_alone(scenario.cameras)) within.push_back(Stage::kUsbDelivery);
+  std::vector<BudgetStage> within = {BudgetStage::kGathering, BudgetStage::kHostClock};
+  if (delivery_is_scoring_alone(scenario.cameras)) within.push_back(BudgetStage::kUsbDelivery);
   std::vector<std::vector<StageSet>> worlds;
   for (std::size_t bits = 0; bits < all; ++bits) {
     const StageSet first(bits);
-    if (std::ranges::any_of(within, [&](Stage stage) { return first.has(stage); })) continue;
+    if (std::ranges::any_of(within, [&](BudgetStage stage) { return first.has(stage); })) continue;
     std::vector<StageSet>& sets = worlds.emplace_back(1, first);
-    for (const Stage stage : within) {
+    for (const BudgetStage stage : within) {
       for (std::size_t i = 0, count = sets.size(); i < count; ++i) {
         sets.push_back(sets[i].with(stage));
       }
@@ -80,12 +80,13 @@ std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scen
 }
 
 scenarios::Pipeline ideal_pipeline(scenarios::Pipeline pipeline, StageSet ideal) {
-  if (ideal.has(Stage::kHostClock)) {
+  if (ideal.has(BudgetStage::kHostClock)) {
     pipeline.host_sync = kOracle;
     pipeline.programs.reset();
   }
-  if (ideal.has(Stage::kGathering)) pipeline.gathering = kOracle;
-  if (ideal.has(Stage::kTrigger) && is_steered(pipeline)) pipeline.capture_alignment = kOracle;
+  if (ideal.has(BudgetStage::kGathering)) pipeline.gathering = kOracle;
+  if (ideal.has(BudgetStage::kTrigger) && is_steered(pipeline))
+    pipeline.capture_alignment = kOracle;
   return pipeline;
 }
 
@@ -102,10 +103,10 @@ std::vector<PipelineChoice> choices_of(const scenarios::Scenario& scenario,
                                        std::span<const StageSet> sets) {
   std::vector<PipelineChoice> choices;
   while (!sets.empty()) {
-    const bool ideal = sets.front().has(Stage::kUsbDelivery);
+    const bool ideal = sets.front().has(BudgetStage::kUsbDelivery);
     scenarios::Scenario world = ideal_scenario(scenario, pipelines.front(), sets.front());
     world.pipelines.clear();
-    for (; !sets.empty() && sets.front().has(Stage::kUsbDelivery) == ideal;
+    for (; !sets.empty() && sets.front().has(BudgetStage::kUsbDelivery) == ideal;
          sets = sets.subspan(1)) {
       for (const scenarios::Pipeline& pipeline : pipelines) {
         world.pipelines.push_back(ideal_pipeline(pipeline, sets.front()));
@@ -190,7 +191,7 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
                                    const scenarios::Pipeline& pipeline, StageSet ideal) {
   std::vector<std::string_view> stages;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-    if (ideal.has(static_cast<Stage>(stage))) stages.push_back(kStageNames[stage]);
+    if (ideal.has(static_cast<BudgetStage>(stage))) stages.push_back(kStageNames[stage]);
   }
   scenarios::Scenario world = scenarios::with_ideal_stages(scenario, stages);
   world.pipelines = {ideal_pipeline(pipeline, ideal)};
@@ -198,17 +199,17 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
   return world;
 }
 
-std::vector<Stage> budget_stages(const Budget& budget) {
-  std::vector<Stage> stages;
+std::vector<BudgetStage> budget_stages(const Budget& budget) {
+  std::vector<BudgetStage> stages;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-    const auto each = static_cast<Stage>(stage);
-    if (each != Stage::kGranularity || budget.is_steered) stages.push_back(each);
+    const auto each = static_cast<BudgetStage>(stage);
+    if (each != BudgetStage::kGranularity || budget.is_steered) stages.push_back(each);
   }
   return stages;
 }
 
-std::string_view stage_name(const Budget& budget, Stage stage) {
-  if (stage == Stage::kTrigger && budget.is_steered) return "phase";
+std::string_view stage_name(const Budget& budget, BudgetStage stage) {
+  if (stage == BudgetStage::kTrigger && budget.is_steered) return "phase";
   return kStageNames[static_cast<std::size_t>(stage)];
 }
 

@@ -64,7 +64,7 @@
 
 namespace simbench::evaluation {
 
-enum class Stage : std::uint8_t {
+enum class BudgetStage : std::uint8_t {
   kTrigger,
   kExposure,
   kStampQuantisation,
@@ -88,12 +88,12 @@ class StageSet {
 
   constexpr StageSet() = default;
   constexpr explicit StageSet(std::size_t bits) : bits_(bits) {}
-  constexpr bool has(Stage stage) const { return (bits_ & bit(stage)) != 0; }
+  constexpr bool has(BudgetStage stage) const { return (bits_ & bit(stage)) != 0; }
   constexpr std::size_t bits() const { return bits_; }
-  constexpr StageSet with(Stage stage) const { return StageSet(bits_ | bit(stage)); }
+  constexpr StageSet with(BudgetStage stage) const { return StageSet(bits_ | bit(stage)); }
 
  private:
-  static constexpr std::size_t bit(Stage stage) {
+  static constexpr std::size_t bit(BudgetStage stage) {
     return std::size_t{1} << static_cast<std::size_t>(stage);
   }
   std::size_t bits_ = 0;
@@ -124,8 +124,8 @@ struct Budget {
 
 // The stages that a budget has, in order, and their names: the trigger of a steered pipeline is the
 // "phase" of its alignment.
-std::vector<Stage> budget_stages(const Budget& budget);
-std::string_view stage_name(const Budget& budget, Stage stage);
+std::vector<BudgetStage> budget_stages(const Budget& budget);
+std::string_view stage_name(const Budget& budget, BudgetStage stage);
 
 // How often a budget of these pipelines scores each at a seed.
 std::size_t stage_sets(const std::vector<scenarios::Pipeline>& pipelines);

@@ -256,7 +256,7 @@ FigurePanel parts_panel(const std::string& title, const BudgetPart& total,
 NamedParts named_parts(const Budget& budget, const ErrorParts& error) {
   NamedParts parts;
   parts.reserve(error.stages.size() + 1);
-  for (const evaluation::Stage stage : evaluation::budget_stages(budget)) {
+  for (const evaluation::BudgetStage stage : evaluation::budget_stages(budget)) {
     parts.emplace_back(evaluation::stage_name(budget, stage),
                        &error.stages[static_cast<std::size_t>(stage)]);
   }

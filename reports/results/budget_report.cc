@@ -44,7 +44,7 @@ Table budget_table(const Budget& budget) {
                {"absolute error\n5-95 %"},
                {"absolute error\nshare"},
                {"of AMD physical\nmean"}});
-  for (const evaluation::Stage each : evaluation::budget_stages(budget)) {
+  for (const evaluation::BudgetStage each : evaluation::budget_stages(budget)) {
     const auto stage = static_cast<std::size_t>(each);
     add_line(table, std::string(evaluation::stage_name(budget, each)), budget,
              budget.amd_ms.stages[stage], budget.absolute_error_ms.stages[stage],
@@ -115,7 +115,7 @@ Json part_json(const BudgetPart& part) {
 
 Json error_json(const Budget& budget, const ErrorParts& error) {
   Json stages = Json::array();
-  for (const evaluation::Stage stage : evaluation::budget_stages(budget)) {
+  for (const evaluation::BudgetStage stage : evaluation::budget_stages(budget)) {
     Json entry = {{"stage", evaluation::stage_name(budget, stage)}};
     entry.update(part_json(error.stages[static_cast<std::size_t>(stage)]));
     stages.push_back(std::move(entry));

@@ -103,9 +103,9 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
   for (const std::size_t stage : order) {
     const double share = parts.stages[stage].mean / total;
     if (share < kSmallShare) break;
-    shares += fmt::format("{}{} {:.0f} %", shares.empty() ? "" : ", ",
-                          evaluation::stage_name(budget, static_cast<evaluation::Stage>(stage)),
-                          100 * share);
+    shares += fmt::format(
+        "{}{} {:.0f} %", shares.empty() ? "" : ", ",
+        evaluation::stage_name(budget, static_cast<evaluation::BudgetStage>(stage)), 100 * share);
   }
   if (shares.empty()) return "";
   std::string text = fmt::format("What limits it (error budget over {}): {}.",

@@ -44,7 +44,7 @@ void expect_sum(const ErrorParts& error) {
   }
 }
 
-double stage_mean(const ErrorParts& error, Stage stage) {
+double stage_mean(const ErrorParts& error, BudgetStage stage) {
   return error.stages[static_cast<std::size_t>(stage)].mean;
 }
 
@@ -59,8 +59,8 @@ TEST(Budget, PartsAddUpAndNothingIsLeft) {
   EXPECT_LT(budget.amd_ms.remainder.mean, 0.003);
   EXPECT_LT(budget.absolute_error_ms.remainder.mean, 0.003);
   // The latency of the delivery goes straight into the stamps of a one-way method.
-  EXPECT_GT(stage_mean(budget.absolute_error_ms, Stage::kUsbDelivery), 10);
-  EXPECT_GT(stage_mean(budget.amd_ms, Stage::kHostClock), 0);
+  EXPECT_GT(stage_mean(budget.absolute_error_ms, BudgetStage::kUsbDelivery), 10);
+  EXPECT_GT(stage_mean(budget.amd_ms, BudgetStage::kHostClock), 0);
 }
 
 void expect_equal_parts(const ErrorParts& a, const ErrorParts& b) {
@@ -108,10 +108,11 @@ TEST(Budget, ALateBranchIsPhysicalAndTheTriggersAlone) {
   const scenarios::Scenario scenario = small_world("/trigger/cable_delay_max_us", "3000");
   const Budget budget = budget_of(scenario, {"oracle", "oracle", "oracle", "yoon2021"});
   expect_sum(budget.physical_ms);
-  EXPECT_NEAR(stage_mean(budget.physical_ms, Stage::kTrigger), budget.physical_ms.total.mean, 0.01);
-  EXPECT_NEAR(stage_mean(budget.amd_ms, Stage::kTrigger), budget.amd_ms.total.mean, 0.01);
-  EXPECT_NEAR(stage_mean(budget.amd_ms, Stage::kUsbDelivery), 0, 1e-9);
-  EXPECT_NEAR(stage_mean(budget.absolute_error_ms, Stage::kTrigger), 0, 1e-6);
+  EXPECT_NEAR(stage_mean(budget.physical_ms, BudgetStage::kTrigger), budget.physical_ms.total.mean,
+              0.01);
+  EXPECT_NEAR(stage_mean(budget.amd_ms, BudgetStage::kTrigger), budget.amd_ms.total.mean, 0.01);
+  EXPECT_NEAR(stage_mean(budget.amd_ms, BudgetStage::kUsbDelivery), 0, 1e-9);
+  EXPECT_NEAR(stage_mean(budget.absolute_error_ms, BudgetStage::kTrigger), 0, 1e-6);
 }
 
 }  // namespace

@@ -26,11 +26,11 @@ evaluation::Budget budget_of(double host_clock_ms, double delivery_ms) {
   evaluation::Budget budget;
   for (evaluation::BudgetPart& stage : budget.amd_ms.stages) stage = equal_part(0);
   for (evaluation::BudgetPart& stage : budget.amd_ms.alone) stage = equal_part(0);
-  budget.amd_ms.stages[static_cast<std::size_t>(evaluation::Stage::kHostClock)] =
+  budget.amd_ms.stages[static_cast<std::size_t>(evaluation::BudgetStage::kHostClock)] =
       equal_part(host_clock_ms);
-  budget.amd_ms.stages[static_cast<std::size_t>(evaluation::Stage::kUsbDelivery)] =
+  budget.amd_ms.stages[static_cast<std::size_t>(evaluation::BudgetStage::kUsbDelivery)] =
       equal_part(delivery_ms);
-  budget.amd_ms.alone[static_cast<std::size_t>(evaluation::Stage::kHostClock)] =
+  budget.amd_ms.alone[static_cast<std::size_t>(evaluation::BudgetStage::kHostClock)] =
       equal_part(host_clock_ms / 2);
   budget.amd_ms.total = equal_part(host_clock_ms + delivery_ms);
   return budget;
