@@ -18,7 +18,7 @@
 #include "algorithms/ports/frame_control.h"
 #include "hardware/camera/camera.h"
 #include "hardware/clock/node_clock.h"
-#include "hardware/node/kept_frames.h"
+#include "hardware/node/node_frame_feed.h"
 
 namespace simbench::hardware {
 
@@ -51,7 +51,7 @@ class RealFrameControl final : public FrameControl {
   Host& host_;
   std::uint32_t camera_;
   std::shared_ptr<CameraSteering> steering_;
-  KeptFrames frames_;
+  NodeFrameFeed frames_;
 };
 
 }  // namespace simbench::hardware

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "hardware/node/kept_frames.h"
+#include "hardware/node/node_frame_feed.h"
 #include "hardware/node/real_frame_control.h"
 
 namespace simbench::hardware {
@@ -57,7 +57,7 @@ class RealHost::State {
 
   Parts parts;
   NodeSteadyClock steady_clock;
-  KeptFrames frames;
+  NodeFrameFeed frames;
   // All that there were, as coroutines may hold them, and those of the cameras in use.
   std::vector<std::unique_ptr<RealFrameControl>> all_controls;
   std::vector<FrameControl*> controls;

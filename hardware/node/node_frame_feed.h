@@ -3,10 +3,10 @@
 // The last kKept that came while no coroutine waited are kept. One coroutine waits at a time
 // (algorithms/ports/host.h). One thread, the one that runs `context`.
 //
-//   KeptFrames frames(context, clock);
+//   NodeFrameFeed frames(context, clock);
 //   frames.deliver({.camera = 3, .counter = 1});
-#ifndef SIMBENCH_HARDWARE_NODE_KEPT_FRAMES_H_
-#define SIMBENCH_HARDWARE_NODE_KEPT_FRAMES_H_
+#ifndef SIMBENCH_HARDWARE_NODE_NODE_FRAME_FEED_H_
+#define SIMBENCH_HARDWARE_NODE_NODE_FRAME_FEED_H_
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -19,11 +19,11 @@
 
 namespace simbench::hardware {
 
-class KeptFrames final : public FrameFeed {
+class NodeFrameFeed final : public FrameFeed {
  public:
   static constexpr std::size_t kKept = 1024;
 
-  KeptFrames(boost::asio::io_context& context, const NodeClock& clock);
+  NodeFrameFeed(boost::asio::io_context& context, const NodeClock& clock);
 
   Task<std::optional<FrameArrival>> next(SteadyTime deadline) override;
   void deliver(const FrameArrival& frame);
@@ -36,4 +36,4 @@ class KeptFrames final : public FrameFeed {
 
 }  // namespace simbench::hardware
 
-#endif  // SIMBENCH_HARDWARE_NODE_KEPT_FRAMES_H_
+#endif  // SIMBENCH_HARDWARE_NODE_NODE_FRAME_FEED_H_

@@ -1,14 +1,14 @@
-#include "hardware/node/kept_frames.h"
+#include "hardware/node/node_frame_feed.h"
 
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
 namespace simbench::hardware {
 
-KeptFrames::KeptFrames(boost::asio::io_context& context, const NodeClock& clock)
+NodeFrameFeed::NodeFrameFeed(boost::asio::io_context& context, const NodeClock& clock)
     : clock_(clock), waiting_(context) {}
 
-Task<std::optional<FrameArrival>> KeptFrames::next(SteadyTime deadline) {
+Task<std::optional<FrameArrival>> NodeFrameFeed::next(SteadyTime deadline) {
   while (frames_.empty()) {
     if (clock_.steady_at(monotonic_now()) >= deadline) co_return std::nullopt;
     waiting_.expires_at(for_timer(clock_.oscillator().when(deadline)));
@@ -21,7 +21,7 @@ Task<std::optional<FrameArrival>> KeptFrames::next(SteadyTime deadline) {
   co_return frame;
 }
 
-void KeptFrames::deliver(const FrameArrival& frame) {
+void NodeFrameFeed::deliver(const FrameArrival& frame) {
   frames_.push_back(frame);
   waiting_.cancel();
 }
