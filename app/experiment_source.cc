@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "algorithms/device_time/clock_map.h"
@@ -40,8 +41,8 @@ class Played {
  public:
   explicit Played(const KeptRecording& recording) {
     std::optional<TrueTime> zero;
-    for (const RecordingEvent& event : recording.events()) {
-      const auto* frame = std::get_if<FrameEvent>(&event);
+    for (const KeptEvent& event : recording.events()) {
+      const auto* frame = event_as<FrameEvent>(event);
       if (frame == nullptr || !frame->truth) continue;
       frames_.emplace(name_of(frame->record), *frame->truth);
       if (frame->truth->pulse < 0) continue;
@@ -49,11 +50,11 @@ class Played {
     }
     if (!zero) throw RecordingFailed("the played capture has no frame that a pulse exposed");
     zero_ = *zero;
-    for (const RecordingEvent& event : recording.events()) {
-      if (const auto* pulse = std::get_if<PulseEvent>(&event)) pulses_.push_back(*pulse);
+    for (const KeptEvent& event : recording.events()) {
+      if (const auto* pulse = event_as<PulseTruth>(event)) pulses_.push_back(*pulse);
     }
     std::stable_sort(pulses_.begin(), pulses_.end(),
-                     [](const PulseEvent& a, const PulseEvent& b) { return a.at < b.at; });
+                     [](const PulseTruth& a, const PulseTruth& b) { return a.at < b.at; });
   }
 
   const FrameTruth& find(const FrameRecord& frame) const {
@@ -64,12 +65,12 @@ class Played {
     }
     return found->second;
   }
-  const std::vector<PulseEvent>& pulses() const { return pulses_; }  // in order of time
+  const std::vector<PulseTruth>& pulses() const { return pulses_; }  // in order of time
   Nanoseconds since_zero(TrueTime at) const { return at - zero_; }
 
  private:
   std::map<FrameName, FrameTruth> frames_;
-  std::vector<PulseEvent> pulses_;
+  std::vector<PulseTruth> pulses_;
   TrueTime zero_;
 };
 
@@ -78,8 +79,8 @@ class Clocks {
  public:
   Clocks(std::vector<hardware::NodeOscillator> oscillators, const KeptRecording& captured)
       : oscillators_(std::move(oscillators)), maps_(oscillators_.size()) {
-    for (const RecordingEvent& event : captured.events()) {
-      const auto* adjustment = std::get_if<ClockAdjustment>(&event);
+    for (const KeptEvent& event : captured.events()) {
+      const auto* adjustment = event_as<ClockAdjustment>(event);
       if (adjustment != nullptr && adjustment->host < maps_.size()) {
         maps_[adjustment->host].add(*adjustment);
       }
@@ -121,8 +122,8 @@ class TruthAdder {
 
   void hand_over(const KeptRecording& captured) {
     sink_.on_start(layout_);
-    for (const RecordingEvent& event : captured.events()) {
-      if (const auto* frame = std::get_if<FrameEvent>(&event)) {
+    for (const KeptEvent& event : captured.events()) {
+      if (const auto* frame = event_as<FrameEvent>(event)) {
         add_frame(frame->record);
       } else {
         notify(event, sink_);
@@ -153,15 +154,15 @@ class TruthAdder {
   // Hands over the pulses up to this instant.
   void add_pulses(MonotonicTime until) {
     for (; added_ < played_.pulses().size(); ++added_) {
-      const PulseEvent& pulse = played_.pulses()[added_];
+      const PulseTruth& pulse = played_.pulses()[added_];
       const MonotonicTime at = instant(pulse.at);
       if (at > until) return;
       const HostTime master = clocks_.system(0, at);
-      std::vector<Nanoseconds> errors;
+      PulseTruth measured = {.pulse = pulse.pulse, .at = as_true(at)};
       for (std::size_t host = 0; host < clocks_.hosts(); ++host) {
-        errors.push_back(clocks_.system(host, at) - master);
+        measured.host_errors.push_back(clocks_.system(host, at) - master);
       }
-      sink_.on_pulse({.pulse = pulse.pulse, .at = as_true(at), .host_errors = errors});
+      sink_.on_event(measured);
     }
   }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "evaluation/sweep/task_farm.h"
 #include "recording/forwarding_sink.h"
@@ -23,17 +24,13 @@ void throw_if_interrupted() {
 class InterruptibleSink final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    throw_if_interrupted();
-    sink().on_frame(frame, truth);
-  }
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
     throw_if_interrupted();
     sink().on_frames(frames, truths);
   }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    throw_if_interrupted();
-    sink().on_exchange(host, exchange);
+  void on_event(const RecordingEvent& event) override {
+    if (std::holds_alternative<ExchangeEvent>(event)) throw_if_interrupted();
+    sink().on_event(event);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "app/interrupt.h"
 #include "recording/counted.h"
@@ -48,13 +49,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 class InputCheck final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
-  void on_poll(const DevicePoll& poll) override {
-    has_polls_ = true;
-    sink().on_poll(poll);
-  }
-  void on_led_sighting(const LedSighting& sighting) override {
-    has_sightings_ = true;
-    sink().on_led_sighting(sighting);
+  void on_event(const RecordingEvent& event) override {
+    has_polls_ = has_polls_ || std::holds_alternative<DevicePoll>(event);
+    has_sightings_ = has_sightings_ || std::holds_alternative<LedSighting>(event);
+    sink().on_event(event);
   }
 
   // What the capture lacks of a need; null if nothing.

@@ -65,9 +65,11 @@ Capture make_capture(std::uint32_t cameras, std::int64_t warm_up_pulses, std::in
 void play(const Capture& capture, simbench::RecordingSink& sink) {
   sink.on_start(capture.layout);
   const std::size_t cameras = capture.layout.cameras.size();
-  const std::vector<Nanoseconds> no_errors(capture.layout.hosts);
+  simbench::RecordingEvent event =
+      simbench::PulseTruth{.host_errors = std::vector<Nanoseconds>(capture.layout.hosts)};
   for (std::size_t begin = 0; begin < capture.frames.size(); begin += cameras) {
-    sink.on_pulse({.pulse = static_cast<std::int64_t>(begin / cameras), .host_errors = no_errors});
+    std::get<simbench::PulseTruth>(event).pulse = static_cast<std::int64_t>(begin / cameras);
+    sink.on_event(event);
     sink.on_frames(std::span(capture.frames).subspan(begin, cameras),
                    std::span(capture.truths).subspan(begin, cameras));
   }

@@ -23,10 +23,13 @@ CameraStream& CameraStreamSink::stream_of(const FrameRecord& frame) {
   return streams_[place->second];
 }
 
-void CameraStreamSink::on_frame(const FrameRecord& frame, const FrameTruth* /*truth*/) {
-  stream_of(frame).frames.push_back({.counter = frame.counter,
-                                     .sensor = Nanoseconds(std::int64_t{frame.sensor.us} * 1000),
-                                     .arrival = frame.arrival_steady.time_since_epoch()});
+void CameraStreamSink::on_frames(std::span<const FrameRecord> frames,
+                                 std::span<const FrameTruth> /*truths*/) {
+  for (const FrameRecord& frame : frames) {
+    stream_of(frame).frames.push_back({.counter = frame.counter,
+                                       .sensor = Nanoseconds(std::int64_t{frame.sensor.us} * 1000),
+                                       .arrival = frame.arrival_steady.time_since_epoch()});
+  }
 }
 
 }  // namespace simbench

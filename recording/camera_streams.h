@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,12 +33,8 @@ class CameraStreamSink final : public RecordingSink {
       : description_(std::move(description)) {}
 
   void on_start(const RigLayout& layout) override { layout_ = layout; }
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
-  void on_pulse(const PulseTruth&) override {}
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome&) override {}
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
+  void on_event(const RecordingEvent&) override {}
 
   std::vector<CameraStream> take() { return std::move(streams_); }
 

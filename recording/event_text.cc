@@ -2,36 +2,130 @@
 
 #include <array>
 #include <chrono>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace simbench {
 namespace {
+
+constexpr std::string_view kFrameKind = "frame";
+// Of each RecordingEvent, in its order.
+constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
+    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led"};
+static_assert(!kKinds.back().empty(), "every event has a kind");
+
+template <class Value, class Event>
+concept Any = std::same_as<std::remove_const_t<Value>, Event>;
+
+// The members of each event in the order of its line, with their names: for writing and reading.
+
+void members(const auto& form, Any<FrameRecord> auto& frame) {
+  form("camera", frame.camera);
+  form("stream", frame.stream);
+  form("domain", frame.domain);
+  form("counter", frame.counter);
+  form("exposure_us", frame.exposure_us);
+  form("sensor_us", frame.sensor.us);
+  form("frame_us", frame.frame.us);
+  form("backend_ns", frame.backend);
+  form("arrival_ns", frame.arrival);
+  form("arrival_steady_ns", frame.arrival_steady);
+}
+
+void members(const auto& form, Any<FrameTruth> auto& truth) {
+  form("pulse", truth.pulse);
+  form("exposure_start_ns", truth.exposure_start);
+  form("exposure_end_ns", truth.exposure_end);
+  form("reference_ns", truth.reference);
+  form("own_host_ns", truth.own_host);
+  form("own_steady_ns", truth.own_steady);
+  form("delivered_ns", truth.delivered);
+}
+
+void members(const auto& form, Any<PulseTruth> auto& pulse) {
+  form("pulse", pulse.pulse);
+  form("at_ns", pulse.at);
+  form("error_ns", pulse.host_errors);
+}
+
+void members(const auto& form, Any<ClockAdjustment> auto& adjustment) {
+  form("host", adjustment.host);
+  form("at_steady_ns", adjustment.at);
+  form("before_ns", adjustment.before);
+  form("after_ns", adjustment.after);
+  form("rate_ppb", adjustment.rate_ppb);
+}
+
+void members(const auto& form, Any<DevicePoll> auto& poll) {
+  form("camera", poll.camera);
+  form("device_us", poll.device.us);
+  form("t0_ns", poll.t0);
+  form("t1_ns", poll.t1);
+  form("t0_steady_ns", poll.t0_steady);
+  form("t1_steady_ns", poll.t1_steady);
+}
+
+void members(const auto& form, Any<ExchangeEvent> auto& event) {
+  form("host", event.host);
+  form("peer", event.exchange.peer);
+  form("t1_ns", event.exchange.t1);
+  form("t2_ns", event.exchange.t2);
+  form("t3_ns", event.exchange.t3);
+  form("t4_ns", event.exchange.t4);
+}
+
+void members(const auto& form, Any<SyncOutcome> auto& outcome) {
+  form("slave", outcome.slave);
+  form("synchronised", outcome.synchronised);
+  form("passes", outcome.passes);
+  form("message", outcome.message);
+}
+
+void members(const auto& form, Any<AlignmentReport> auto& report) {
+  form("camera", report.camera);
+  form("aligned", report.aligned);
+  form("controls", report.controls);
+  form("message", report.message);
+}
+
+void members(const auto& form, Any<LedSighting> auto& sighting) {
+  form("camera", sighting.camera);
+  form("sensor_us", sighting.sensor.us);
+  form("led_start_ns", sighting.led_start_ns);
+  form("led_end_ns", sighting.led_end_ns);
+}
 
 constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamKind::kDepth),
                                                       scenarios::to_text(StreamKind::kColour)};
 constexpr std::array<std::string_view, 3> kDomains = {"hardware_clock", "system_time",
                                                       "global_time"};
+constexpr const auto& text_words(StreamKind) { return kStreams; }
+constexpr const auto& text_words(StampDomain) { return kDomains; }
 
 // The name of a value; its number if it has no name, which does not read back.
-template <std::size_t N, class Enum>
-void append_name(std::string& line, const std::array<std::string_view, N>& names, Enum value) {
+template <class Enum>
+void append_name(std::string& line, Enum value) {
+  const auto& names = text_words(value);
   const auto index = static_cast<std::size_t>(value);
   line += ',';
-  if (index < N) {
+  if (index < names.size()) {
     line += names[index];
   } else {
     append_number(line, index);
   }
 }
 
-template <class Enum, std::size_t N>
-Enum read_name(FieldReader& fields, const char* name,
-               const std::array<std::string_view, N>& names) {
+template <class Enum>
+Enum read_name(FieldReader& fields, const char* name) {
+  const auto& names = text_words(Enum{});
   const std::string_view found = fields.next(name);
   std::string allowed;
-  for (std::size_t i = 0; i < N; ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     if (found == names[i]) return static_cast<Enum>(i);
     if (i > 0) allowed += ", ";
     allowed += names[i];
@@ -39,23 +133,29 @@ Enum read_name(FieldReader& fields, const char* name,
   fields.fail(name, allowed);
 }
 
-template <class Time>
-Time read_time(FieldReader& fields, const char* name) {
-  return Time(typename Time::duration(fields.whole<std::int64_t>(name)));
+void append_list(std::string& line, const std::vector<Nanoseconds>& values) {
+  line += ',';
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) line += ';';
+    append_number(line, values[i].count());
+  }
 }
 
-template <class... Values>
-void append_fields(std::string& line, const Values&... values) {
-  (append_field(line, values), ...);
+std::vector<Nanoseconds> read_list(FieldReader& fields, const char* name) {
+  std::vector<Nanoseconds> values;
+  std::string_view left = fields.next(name);
+  while (!left.empty()) {
+    const std::size_t end = left.find(';');
+    std::int64_t value = 0;
+    const bool ends_here = end == std::string_view::npos;
+    if (!read_whole(left.substr(0, end), value) || end + 1 == left.size()) {
+      fields.fail(name, "whole numbers with ';' between them");
+    }
+    values.emplace_back(value);
+    left.remove_prefix(ends_here ? left.size() : end + 1);
+  }
+  return values;
 }
-
-std::optional<HostTime> read_optional(FieldReader& fields, const char* name) {
-  const std::optional<std::int64_t> ns = fields.optional_whole<std::int64_t>(name);
-  if (!ns) return std::nullopt;
-  return HostTime(Nanoseconds(*ns));
-}
-
-void append_flag(std::string& line, bool flag) { line += flag ? ",true" : ",false"; }
 
 bool read_flag(FieldReader& fields, const char* name) {
   const std::string_view flag = fields.next(name);
@@ -63,61 +163,63 @@ bool read_flag(FieldReader& fields, const char* name) {
   return flag == "true";
 }
 
-struct Appender {
+// Appends members, each after a comma.
+struct Writer {
   std::string& line;
 
-  void operator()(const FrameEvent& frame) const {
-    line += "frame,";
-    append_frame(line, frame.record);
-    if (frame.truth) append_truth(line, *frame.truth);
-  }
-  void operator()(const PulseEvent& pulse) const {
-    line += "pulse";
-    append_fields(line, pulse.pulse, pulse.at);
+  void operator()(const char* /*name*/, bool flag) const { line += flag ? ",true" : ",false"; }
+  void operator()(const char* /*name*/, const std::string& text) const {
     line += ',';
-    for (std::size_t i = 0; i < pulse.host_errors.size(); ++i) {
-      if (i > 0) line += ';';
-      append_number(line, pulse.host_errors[i].count());
+    append_escaped(line, text);
+  }
+  void operator()(const char* /*name*/, const std::vector<Nanoseconds>& values) const {
+    append_list(line, values);
+  }
+  template <class Value>
+  void operator()(const char* /*name*/, const Value& value) const {
+    if constexpr (std::is_enum_v<Value>) {
+      append_name(line, value);
+    } else {
+      append_field(line, value);
     }
   }
-  void operator()(const ClockAdjustment& adjustment) const {
-    line += "adjustment";
-    append_fields(line, adjustment.host, adjustment.at, adjustment.before, adjustment.after,
-                  adjustment.rate_ppb);
+};
+
+struct Reader {
+  FieldReader& fields;
+
+  void operator()(const char* name, bool& flag) const { flag = read_flag(fields, name); }
+  void operator()(const char* name, double& value) const { value = fields.finite(name); }
+  void operator()(const char* name, std::string& text) const { text = fields.text(name); }
+  void operator()(const char* name, std::vector<Nanoseconds>& values) const {
+    values = read_list(fields, name);
   }
-  void operator()(const DevicePoll& poll) const {
-    line += "poll";
-    append_fields(line, poll.camera, poll.device.us, poll.t0, poll.t1, poll.t0_steady,
-                  poll.t1_steady);
+  template <class Base>
+  void operator()(const char* name, std::chrono::time_point<Base, Nanoseconds>& time) const {
+    time =
+        std::chrono::time_point<Base, Nanoseconds>(Nanoseconds(fields.whole<std::int64_t>(name)));
   }
-  void operator()(const ExchangeEvent& event) const {
-    const Exchange& exchange = event.exchange;
-    line += "exchange";
-    append_fields(line, event.host, exchange.peer, exchange.t1, exchange.t2, exchange.t3,
-                  exchange.t4);
+  template <class Time>
+  void operator()(const char* name, std::optional<Time>& time) const {
+    const auto ns = fields.optional_whole<std::int64_t>(name);
+    time = ns ? std::optional<Time>(Time(Nanoseconds(*ns))) : std::nullopt;
   }
-  void operator()(const SyncOutcome& outcome) const {
-    line += "outcome";
-    append_field(line, outcome.slave);
-    append_flag(line, outcome.synchronised);
-    append_field(line, outcome.passes);
-    line += ',';
-    append_escaped(line, outcome.message);
-  }
-  void operator()(const AlignmentReport& report) const {
-    line += "alignment";
-    append_field(line, report.camera);
-    append_flag(line, report.aligned);
-    append_field(line, report.controls);
-    line += ',';
-    append_escaped(line, report.message);
-  }
-  void operator()(const LedSighting& sighting) const {
-    line += "led";
-    append_fields(line, sighting.camera, sighting.sensor.us, sighting.led_start_ns,
-                  sighting.led_end_ns);
+  template <class Value>
+  void operator()(const char* name, Value& value) const {
+    if constexpr (std::is_enum_v<Value>) {
+      value = read_name<Value>(fields, name);
+    } else {
+      value = fields.whole<Value>(name);
+    }
   }
 };
+
+template <class Event>
+Event read_members(FieldReader& fields) {
+  Event event{};
+  members(Reader{fields}, event);
+  return event;
+}
 
 FrameEvent read_frame_event(FieldReader& fields) {
   FrameEvent frame{read_frame(fields), std::nullopt};
@@ -125,96 +227,26 @@ FrameEvent read_frame_event(FieldReader& fields) {
   return frame;
 }
 
-PulseEvent read_pulse(FieldReader& fields) {
-  constexpr const char* kErrors = "error_ns";
-  PulseEvent event;
-  event.pulse = fields.whole<std::int64_t>("pulse");
-  event.at = read_time<TrueTime>(fields, "at_ns");
-  std::string_view errors = fields.next(kErrors);
-  while (!errors.empty()) {
-    const std::size_t end = errors.find(';');
-    std::int64_t error = 0;
-    const bool ends_here = end == std::string_view::npos;
-    if (!read_whole(errors.substr(0, end), error) || end + 1 == errors.size()) {
-      fields.fail(kErrors, "whole numbers with ';' between them");
-    }
-    event.host_errors.emplace_back(error);
-    errors.remove_prefix(ends_here ? errors.size() : end + 1);
-  }
-  return event;
-}
-
-// The members of a braced list are read in their order.
-ClockAdjustment read_adjustment(FieldReader& fields) {
-  return {.host = fields.whole<std::uint32_t>("host"),
-          .at = read_time<SteadyTime>(fields, "at_steady_ns"),
-          .before = read_time<HostTime>(fields, "before_ns"),
-          .after = read_time<HostTime>(fields, "after_ns"),
-          .rate_ppb = fields.finite("rate_ppb")};
-}
-
-DevicePoll read_poll(FieldReader& fields) {
-  return {.camera = fields.whole<std::uint32_t>("camera"),
-          .device = {fields.whole<std::uint32_t>("device_us")},
-          .t0 = read_time<HostTime>(fields, "t0_ns"),
-          .t1 = read_time<HostTime>(fields, "t1_ns"),
-          .t0_steady = read_time<SteadyTime>(fields, "t0_steady_ns"),
-          .t1_steady = read_time<SteadyTime>(fields, "t1_steady_ns")};
-}
-
-ExchangeEvent read_exchange(FieldReader& fields) {
-  return {.host = fields.whole<std::uint32_t>("host"),
-          .exchange = {.peer = fields.whole<PeerId>("peer"),
-                       .t1 = read_optional(fields, "t1_ns"),
-                       .t2 = read_optional(fields, "t2_ns"),
-                       .t3 = read_optional(fields, "t3_ns"),
-                       .t4 = read_optional(fields, "t4_ns")}};
-}
-
-SyncOutcome read_outcome(FieldReader& fields) {
-  SyncOutcome outcome;
-  outcome.slave = fields.whole<PeerId>("slave");
-  outcome.synchronised = read_flag(fields, "synchronised");
-  outcome.passes = fields.whole<std::uint32_t>("passes");
-  outcome.message = fields.text("message");
-  return outcome;
-}
-
-AlignmentReport read_alignment(FieldReader& fields) {
-  return {.camera = fields.whole<std::uint32_t>("camera"),
-          .aligned = read_flag(fields, "aligned"),
-          .controls = fields.whole<std::uint32_t>("controls"),
-          .message = fields.text("message")};
-}
-
-LedSighting read_led_sighting(FieldReader& fields) {
-  return {.camera = fields.whole<std::uint32_t>("camera"),
-          .sensor = {fields.whole<std::uint32_t>("sensor_us")},
-          .led_start_ns = fields.whole<std::int64_t>("led_start_ns"),
-          .led_end_ns = fields.whole<std::int64_t>("led_end_ns")};
-}
-
-RecordingEvent read_members(std::string_view kind, FieldReader& fields) {
-  if (kind == "frame") return read_frame_event(fields);
-  if (kind == "pulse") return read_pulse(fields);
-  if (kind == "adjustment") return read_adjustment(fields);
-  if (kind == "poll") return read_poll(fields);
-  if (kind == "exchange") return read_exchange(fields);
-  if (kind == "outcome") return read_outcome(fields);
-  if (kind == "alignment") return read_alignment(fields);
-  if (kind == "led") return read_led_sighting(fields);
-  fields.fail("kind", "frame, pulse, adjustment, poll, exchange, outcome, alignment, led");
+template <std::size_t... Kinds>
+bool read_other(std::string_view kind, FieldReader& fields, KeptEvent& event,
+                std::index_sequence<Kinds...> /*all*/) {
+  const auto read = [&](auto index) {
+    event =
+        RecordingEvent(read_members<std::variant_alternative_t<index(), RecordingEvent>>(fields));
+    return true;
+  };
+  return ((kind == kKinds[Kinds] && read(std::integral_constant<std::size_t, Kinds>{})) || ...);
 }
 
 }  // namespace
 
-std::string to_line(const RecordingEvent& event) {
+std::string to_line(const KeptEvent& event) {
   std::string line;
   append_event(line, event);
   return line;
 }
 
-RecordingEvent from_line(std::string_view line) {
+KeptEvent from_line(std::string_view line) {
   FieldReader fields(line);
   try {
     return read_event(fields);
@@ -223,50 +255,41 @@ RecordingEvent from_line(std::string_view line) {
   }
 }
 
-void append_event(std::string& line, const RecordingEvent& event) {
-  std::visit(Appender{line}, event);
+void append_event(std::string& line, const KeptEvent& event) {
+  if (const auto* frame = std::get_if<FrameEvent>(&event)) {
+    line += kFrameKind;
+    append_frame(line, frame->record);
+    if (frame->truth) append_truth(line, *frame->truth);
+  } else {
+    append_event(line, std::get<RecordingEvent>(event));
+  }
 }
 
-RecordingEvent read_event(FieldReader& fields) {
-  RecordingEvent event = read_members(fields.next("kind"), fields);
+void append_event(std::string& line, const RecordingEvent& event) {
+  line += kKinds[event.index()];
+  std::visit([&](const auto& each) { members(Writer{line}, each); }, event);
+}
+
+KeptEvent read_event(FieldReader& fields) {
+  const std::string_view kind = fields.next("kind");
+  KeptEvent event;
+  if (kind == kFrameKind) {
+    event = read_frame_event(fields);
+  } else if (!read_other(kind, fields, event, std::make_index_sequence<kKinds.size()>())) {
+    std::string allowed(kFrameKind);
+    for (const std::string_view each : kKinds) (allowed += ", ") += each;
+    fields.fail("kind", allowed);
+  }
   fields.end();
   return event;
 }
 
-void append_frame(std::string& line, const FrameRecord& record) {
-  append_number(line, record.camera);
-  append_name(line, kStreams, record.stream);
-  append_name(line, kDomains, record.domain);
-  append_fields(line, record.counter, record.exposure_us, record.sensor.us, record.frame.us,
-                record.backend, record.arrival, record.arrival_steady);
-}
+void append_frame(std::string& line, const FrameRecord& record) { members(Writer{line}, record); }
 
-void append_truth(std::string& line, const FrameTruth& truth) {
-  append_fields(line, truth.pulse, truth.exposure_start, truth.exposure_end, truth.reference,
-                truth.own_host, truth.own_steady, truth.delivered);
-}
+void append_truth(std::string& line, const FrameTruth& truth) { members(Writer{line}, truth); }
 
-FrameRecord read_frame(FieldReader& fields) {
-  return {.camera = fields.whole<std::uint32_t>("camera"),
-          .stream = read_name<StreamKind>(fields, "stream", kStreams),
-          .domain = read_name<StampDomain>(fields, "domain", kDomains),
-          .counter = fields.whole<std::uint32_t>("counter"),
-          .exposure_us = fields.whole<std::uint32_t>("exposure_us"),
-          .sensor = {fields.whole<std::uint32_t>("sensor_us")},
-          .frame = {fields.whole<std::uint32_t>("frame_us")},
-          .backend = read_time<HostTime>(fields, "backend_ns"),
-          .arrival = read_time<HostTime>(fields, "arrival_ns"),
-          .arrival_steady = read_time<SteadyTime>(fields, "arrival_steady_ns")};
-}
+FrameRecord read_frame(FieldReader& fields) { return read_members<FrameRecord>(fields); }
 
-FrameTruth read_truth(FieldReader& fields) {
-  return {.pulse = fields.whole<std::int64_t>("pulse"),
-          .exposure_start = read_time<TrueTime>(fields, "exposure_start_ns"),
-          .exposure_end = read_time<TrueTime>(fields, "exposure_end_ns"),
-          .reference = read_time<HostTime>(fields, "reference_ns"),
-          .own_host = read_time<HostTime>(fields, "own_host_ns"),
-          .own_steady = read_time<SteadyTime>(fields, "own_steady_ns"),
-          .delivered = read_time<HostTime>(fields, "delivered_ns")};
-}
+FrameTruth read_truth(FieldReader& fields) { return read_members<FrameTruth>(fields); }
 
 }  // namespace simbench

@@ -15,6 +15,7 @@
 //   exchange,host,peer,t1_ns,t2_ns,t3_ns,t4_ns
 //   outcome,slave,synchronised,passes,message
 //   alignment,camera,aligned,controls,message
+//   led,camera,sensor_us,led_start_ns,led_end_ns
 //
 // Errors: from_line throws EventTextError, with the column and what was found, for whatever to_line
 // does not write. Any bytes are safe to give to it. Complexity: linear in the line.
@@ -23,13 +24,13 @@
 // that a message names the column of the file.
 //
 //   const std::string line = to_line(event);      // "poll,3,..."
-//   const RecordingEvent same = from_line(line);
+//   const KeptEvent same = from_line(line);
 //
 //   std::string numbered = "17,";
 //   append_event(numbered, event);
 //   FieldReader fields(numbered);
 //   const auto order = fields.whole<std::uint64_t>("order");
-//   const RecordingEvent again = read_event(fields);  // TextFieldError
+//   const KeptEvent again = read_event(fields);  // TextFieldError
 #ifndef SIMBENCH_RECORDING_EVENT_TEXT_H_
 #define SIMBENCH_RECORDING_EVENT_TEXT_H_
 
@@ -48,8 +49,8 @@ class EventTextError : public std::runtime_error {
 };
 
 // Without an end of line.
-std::string to_line(const RecordingEvent& event);
-RecordingEvent from_line(std::string_view line);
+std::string to_line(const KeptEvent& event);
+KeptEvent from_line(std::string_view line);
 
 // The columns of a frame after its kind, without and with truth.
 inline constexpr std::string_view kFrameColumns =
@@ -60,10 +61,11 @@ inline constexpr std::string_view kFrameTruthColumns =
 inline constexpr std::size_t kFrameTruthColumnCount = 7;
 
 // The kind, then the members.
+void append_event(std::string& line, const KeptEvent& event);
 void append_event(std::string& line, const RecordingEvent& event);
-RecordingEvent read_event(FieldReader& fields);
+KeptEvent read_event(FieldReader& fields);
 
-// The members of a frame, without the kind, and those of its truth.
+// The members of a frame, without the kind, and those of its truth; each after a comma.
 void append_frame(std::string& line, const FrameRecord& record);
 void append_truth(std::string& line, const FrameTruth& truth);
 FrameRecord read_frame(FieldReader& fields);

@@ -10,7 +10,6 @@
 #define SIMBENCH_RECORDING_FORKED_SINK_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <span>
 #include <vector>
@@ -32,32 +31,11 @@ class ForkedSink final : public RecordingSink {
   void on_start(const RigLayout& layout) override {
     each([&](RecordingSink& sink) { sink.on_start(layout); });
   }
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    each([&](RecordingSink& sink) { sink.on_frame(frame, truth); });
-  }
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
     each([&](RecordingSink& sink) { sink.on_frames(frames, truths); });
   }
-  void on_pulse(const PulseTruth& truth) override {
-    each([&](RecordingSink& sink) { sink.on_pulse(truth); });
-  }
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    each([&](RecordingSink& sink) { sink.on_adjustment(adjustment); });
-  }
-  void on_poll(const DevicePoll& poll) override {
-    each([&](RecordingSink& sink) { sink.on_poll(poll); });
-  }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    each([&](RecordingSink& sink) { sink.on_exchange(host, exchange); });
-  }
-  void on_outcome(const SyncOutcome& outcome) override {
-    each([&](RecordingSink& sink) { sink.on_outcome(outcome); });
-  }
-  void on_alignment(const AlignmentReport& report) override {
-    each([&](RecordingSink& sink) { sink.on_alignment(report); });
-  }
-  void on_led_sighting(const LedSighting& sighting) override {
-    each([&](RecordingSink& sink) { sink.on_led_sighting(sighting); });
+  void on_event(const RecordingEvent& event) override {
+    each([&](RecordingSink& sink) { sink.on_event(event); });
   }
 
  private:

@@ -7,6 +7,17 @@
 // A capture is streamed, so that one of 18,000 cameras is scored without being held in memory.
 // KeptRecording (recording/event.h) holds all of it and can play it to another sink.
 //
+// Frames come in blocks; all else is a RecordingEvent, so a sink handles the events it wants:
+//
+//   struct PollCount final : RecordingSink {
+//     void on_start(const RigLayout&) override {}
+//     void on_frames(std::span<const FrameRecord>, std::span<const FrameTruth>) override {}
+//     void on_event(const RecordingEvent& event) override {
+//       if (std::holds_alternative<DevicePoll>(event)) ++polls;
+//     }
+//     int polls = 0;
+//   };
+//
 // Units: stamps in their own time base (algorithms/ports/time.h), exposure in microseconds.
 // Source: docs/design.md section 2; the four stamps: docs/reference/d455.md section 1.
 //
@@ -25,6 +36,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/ports/clock_adjustment.h"
@@ -73,7 +85,7 @@ struct FrameTruth {
 struct PulseTruth {
   std::int64_t pulse = 0;
   TrueTime at{};
-  std::span<const Nanoseconds> host_errors;  // system clock minus the master's, per host; [0] is 0
+  std::vector<Nanoseconds> host_errors{};  // system clock minus the master's, per host; [0] is 0
 };
 
 // A reading of a camera's clock over its control interface, at some instant between the readings t0
@@ -99,6 +111,39 @@ struct LedSighting {
   Nanoseconds middle() const { return Nanoseconds(std::midpoint(led_start_ns, led_end_ns)); }
 };
 
+// The four stamps of one exchange of host synchronisation, as one of its two hosts has them.
+struct ExchangeEvent {
+  std::uint32_t host = 0;
+  Exchange exchange;
+};
+
+// Whatever a capture reports besides frames:
+//
+//   PulseTruth       a trigger pulse and the errors of the clocks then; simulated captures only
+//   ClockAdjustment  a host's clock or its rate was set; the first of a host is its initial setting
+//   DevicePoll       a reading of a camera's clock
+//   ExchangeEvent    an exchange of host synchronisation
+//   SyncOutcome      how host synchronisation ended on a slave
+//   AlignmentReport  how far a steered camera is; steered captures only
+//   LedSighting      captures with a clock of LEDs only; after its frame, before the camera's next
+//
+// A new kind is a struct, a place here and its line of text (event_text.cc): what keeps, writes,
+// forwards and forks events takes it from there.
+using RecordingEvent = std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent,
+                                    SyncOutcome, AlignmentReport, LedSighting>;
+
+// Handles an event by its type:
+//
+//   std::visit(Overloaded{[&](const DevicePoll& poll) { sink.on_event(poll); },
+//                         [](const auto&) {}},
+//              event);
+template <class... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
+};
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
+
 struct CameraLayout {
   std::uint32_t host = 0;
 };
@@ -112,29 +157,34 @@ struct RigLayout {
   std::int64_t pulses = 0;
 };
 
+// Who receives a capture, in order of delivery. Frames and events alternate as they happened.
+//
+// Whoever produces events often keeps one and changes it for the next call, so that a pulse with
+// its errors allocates nothing; a sink copies what it keeps.
 class RecordingSink {
  public:
   virtual ~RecordingSink() = default;
   virtual void on_start(const RigLayout& layout) = 0;
-  // Frames in order of delivery; `truth` is null on a real rig. Includes the warm-up.
-  virtual void on_frame(const FrameRecord& frame, const FrameTruth* truth) = 0;
-  // Frames with no other report between them, in order of delivery; `truths` is empty on a real
-  // rig, else as long as `frames`. The same as on_frame() for each, and quicker.
-  virtual void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) {
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      on_frame(frames[i], truths.empty() ? nullptr : &truths[i]);
-    }
+  // Frames with no event between them, the warm-up's too; `truths` is empty on a real rig, else as
+  // long as `frames`. How frames come in blocks tells nothing: a block may be one frame.
+  virtual void on_frames(std::span<const FrameRecord> frames,
+                         std::span<const FrameTruth> truths) = 0;
+  virtual void on_event(const RecordingEvent& event) = 0;
+
+  // A block of one frame; `truth` is null on a real rig.
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) {
+    on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
   }
-  virtual void on_pulse(const PulseTruth& truth) = 0;
-  virtual void on_adjustment(const ClockAdjustment& adjustment) = 0;
-  virtual void on_poll(const DevicePoll& poll) = 0;
-  virtual void on_exchange(std::uint32_t host, const Exchange& exchange) = 0;
-  virtual void on_outcome(const SyncOutcome& outcome) = 0;
-  // Captures whose exposures are steered only; whoever does not care may ignore them.
-  virtual void on_alignment(const AlignmentReport& /*report*/) {}
-  // Captures with a clock of LEDs only; likewise. After its frame, before the camera's next one.
-  virtual void on_led_sighting(const LedSighting& /*sighting*/) {}
 };
+
+// Calls visit(frame, truth) for each frame of a block; `truth` is null on a real rig.
+template <class Visit>
+void for_each_frame(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths,
+                    const Visit& visit) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    visit(frames[i], truths.empty() ? nullptr : &truths[i]);
+  }
+}
 
 // Which capture to make: the pipeline decides which host_sync runs and which load is drawn.
 struct RecordingRequest {
@@ -144,7 +194,8 @@ struct RecordingRequest {
   // What steers the exposures, likewise; null: nothing does.
   CaptureAlignment* capture_alignment = nullptr;
   // Notified of what only a simulated world can show (world_observer.h); outlives the call. Never
-  // changes the recording.
+  // changes the recording; each frame is then a block of its own, followed by what the world shows
+  // of it.
   WorldObserver* observer = nullptr;
   // Once true, a simulated world ends with RecordingCancelled; outlives the call. A signal handler
   // may set it.

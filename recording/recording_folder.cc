@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -28,33 +29,37 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kFlushInterval{100};
 constexpr int kFlushEvents = 1000;
 
-// Whether an event names a camera or a host that the rig does not have.
-struct NumbersCheck {
-  const RigLayout& layout;
-
-  void camera(std::uint32_t number) const { check("camera", number, layout.cameras.size()); }
-  void host(const char* name, std::uint32_t number) const { check(name, number, layout.hosts); }
+// Throws if an event names a camera or a host that the rig does not have: its members are called
+// camera, host, slave and peer.
+class NumbersCheck {
+ public:
+  explicit NumbersCheck(const RigLayout& layout) : layout_(layout) {}
 
   void operator()(const FrameEvent& event) const { camera(event.record.camera); }
-  void operator()(const PulseEvent& event) const {
-    if (event.host_errors.size() == layout.hosts) return;
-    throw TextFieldError(fmt::format("found {} clock errors, allowed: one for each of {} hosts",
-                                     event.host_errors.size(), layout.hosts));
+  void operator()(const RecordingEvent& event) const { std::visit(*this, event); }
+  template <class Event>
+  void operator()(const Event& event) const {
+    if constexpr (requires { event.camera; }) camera(event.camera);
+    if constexpr (requires { event.host; }) host("host", event.host);
+    if constexpr (requires { event.slave; }) host("slave", event.slave);
+    if constexpr (requires { event.exchange.peer; }) host("peer", event.exchange.peer);
+    if constexpr (requires { event.host_errors; }) errors(event.host_errors.size());
   }
-  void operator()(const ClockAdjustment& event) const { host("host", event.host); }
-  void operator()(const DevicePoll& event) const { camera(event.camera); }
-  void operator()(const ExchangeEvent& event) const {
-    host("host", event.host);
-    host("peer", event.exchange.peer);
-  }
-  void operator()(const SyncOutcome& event) const { host("slave", event.slave); }
-  void operator()(const AlignmentReport& event) const { camera(event.camera); }
-  void operator()(const LedSighting& event) const { camera(event.camera); }
 
+ private:
+  void camera(std::uint32_t number) const { check("camera", number, layout_.cameras.size()); }
+  void host(const char* name, std::uint32_t number) const { check(name, number, layout_.hosts); }
+  void errors(std::size_t count) const {
+    if (count == layout_.hosts) return;
+    throw TextFieldError(fmt::format("found {} clock errors, allowed: one for each of {} hosts",
+                                     count, layout_.hosts));
+  }
   static void check(const char* name, std::size_t number, std::size_t count) {
     if (number < count) return;
     throw TextFieldError(fmt::format("{}: found {}, allowed: 0 to {}", name, number, count - 1));
   }
+
+  const RigLayout& layout_;
 };
 
 // One of a capture's two files. `capture` must outlive it.
@@ -66,7 +71,7 @@ class CaptureFile {
 
   bool has_event() const { return state_ == State::kEvent; }
   std::uint64_t order() const { return order_; }
-  const RecordingEvent& event() const { return event_; }
+  const KeptEvent& event() const { return event_; }
   std::string place() const { return lines_.place(); }
   // Why the next event cannot be read; empty at a good end.
   const std::string& damage() const { return damage_; }
@@ -89,7 +94,7 @@ class CaptureFile {
   std::uint64_t expected_ = 0;  // lines, of a complete capture
   std::uint64_t read_ = 0;
   std::uint64_t order_ = 0;
-  RecordingEvent event_;
+  KeptEvent event_;
   std::string damage_;
   State state_ = State::kEvent;
 };
@@ -105,7 +110,7 @@ class CaptureReader {
 
   // False at the end.
   bool next();
-  const RecordingEvent& event() const { return current_->event(); }
+  const KeptEvent& event() const { return current_->event(); }
 
  private:
   const RecordedCapture& capture_;
@@ -170,7 +175,7 @@ void CaptureFile::read_line() {
   if (read_ > 0 && order_ <= before) {
     throw TextFieldError(fmt::format("order: found {}, allowed: above {}", order_, before));
   }
-  std::visit(NumbersCheck{capture_.layout}, event_);
+  std::visit(NumbersCheck(capture_.layout), event_);
   ++read_;
 }
 
@@ -283,7 +288,6 @@ class CaptureFiles {
   void add_frame(const FrameRecord& frame, const FrameTruth* truth) {
     std::string& line = frames_.buffer();
     append_number(line, order_);
-    line += ',';
     append_frame(line, frame);
     if (truth != nullptr) {
       append_truth(line, *truth);
@@ -421,26 +425,17 @@ class RecordingWriter::State final : public RecordingSink {
     write_manifest(manifest_, folder_);
   }
 
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    if (files_) files_->add_frame(frame, truth);
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    if (!files_) return;
+    for_each_frame(frames, truths, [this](const FrameRecord& frame, const FrameTruth* truth) {
+      files_->add_frame(frame, truth);
+    });
   }
-  void on_pulse(const PulseTruth& truth) override {
-    add(PulseEvent{truth.pulse, truth.at, {truth.host_errors.begin(), truth.host_errors.end()}});
-  }
-  void on_adjustment(const ClockAdjustment& adjustment) override { add(adjustment); }
-  void on_poll(const DevicePoll& poll) override { add(poll); }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    add(ExchangeEvent{host, exchange});
-  }
-  void on_outcome(const SyncOutcome& outcome) override { add(outcome); }
-  void on_alignment(const AlignmentReport& report) override { add(report); }
-  void on_led_sighting(const LedSighting& sighting) override { add(sighting); }
-
- private:
-  void add(const RecordingEvent& event) {
+  void on_event(const RecordingEvent& event) override {
     if (files_) files_->add_event(event);
   }
 
+ private:
   // False if there was nothing to write. Afterwards there is no capture, also if it throws.
   bool finish_files(std::vector<std::string> notes) {
     SIMBENCH_ASSERT(next_, "end() without begin()");

@@ -30,9 +30,6 @@ class IdealDelivery final : public ForwardingSink {
  public:
   IdealDelivery(RecordingSink& sink, Nanoseconds quantum)
       : ForwardingSink(sink), quantum_(quantum) {}
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
-  }
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
     if (truths.size() != frames.size()) {
       throw std::runtime_error("an ideal delivery needs the truth, which only a simulation has");

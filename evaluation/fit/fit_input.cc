@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
+#include <variant>
 
 #include "algorithms/ports/time.h"
 #include "evaluation/replay/replay.h"
@@ -31,7 +33,13 @@ void FitInputSink::on_start(const RigLayout& layout) {
   }
 }
 
-void FitInputSink::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
+void FitInputSink::on_frames(std::span<const FrameRecord> frames,
+                             std::span<const FrameTruth> truths) {
+  for_each_frame(frames, truths,
+                 [this](const FrameRecord& frame, const FrameTruth* truth) { add(frame, truth); });
+}
+
+void FitInputSink::add(const FrameRecord& frame, const FrameTruth* truth) {
   if (frame.domain != StampDomain::kHardwareClock) {
     throw FitError(fmt::format(
         "camera {}: found stamps that are not of the camera's clock, allowed hardware stamps (of a "
@@ -48,12 +56,11 @@ void FitInputSink::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
       {frame.counter, frame.sensor.us, frame.frame.us, arrival_ns});
 }
 
-void FitInputSink::on_adjustment(const ClockAdjustment& adjustment) {
-  input_.clock_events.emplace_back(adjustment);
-}
-
-void FitInputSink::on_exchange(std::uint32_t host, const Exchange& exchange) {
-  input_.clock_events.emplace_back(ExchangeEvent{host, exchange});
+void FitInputSink::on_event(const RecordingEvent& event) {
+  if (std::holds_alternative<ClockAdjustment>(event) ||
+      std::holds_alternative<ExchangeEvent>(event)) {
+    input_.clock_events.push_back(event);
+  }
 }
 
 FitInput FitInputSink::take() {

@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -64,16 +65,14 @@ class FitInputSink final : public RecordingSink {
  public:
   explicit FitInputSink(FitInputOptions options) : options_(std::move(options)) {}
   void on_start(const RigLayout& layout) override;
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
-  void on_pulse(const PulseTruth&) override {}
-  void on_adjustment(const ClockAdjustment& adjustment) override;
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override;
-  void on_outcome(const SyncOutcome&) override {}
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
+  void on_event(const RecordingEvent& event) override;
 
   FitInput take();
 
  private:
+  void add(const FrameRecord& frame, const FrameTruth* truth);
+
   struct Stamps {
     std::uint32_t counter;
     std::uint32_t sensor_us;

@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "algorithms/device_time/unwrap.h"
 #include "evaluation/scoring/pipeline_scorer.h"
@@ -58,28 +59,22 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     ForwardingSink::on_start(layout);
   }
 
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    if (frame.stream != stream_) return ForwardingSink::on_frame(frame, truth);
-    if (truth == nullptr) {
-      throw RecordingFailed(
-          "the true exposure times of the frames are unknown: only a simulation has them");
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    passed_.assign(truths.begin(), truths.end());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (frames[i].stream == stream_) keep(frames[i], truths.empty() ? nullptr : &passed_[i]);
     }
-    CapturedCamera& camera = cameras_.at(frame.camera);
-    camera.exposed[camera.unwrapper.unwrap(frame.sensor)] = {truth->mid_exposure(), frame.counter};
-    FrameTruth passed = *truth;
-    if (!triggered_) passed.pulse = last_pulse_before(truth->mid_exposure());
-    ForwardingSink::on_frame(frame, &passed);
-  }
-
-  void on_pulse(const PulseTruth& truth) override {
-    pulses_.emplace_back(truth.at, truth.pulse);
-    ForwardingSink::on_pulse(truth);
+    sink().on_frames(frames, passed_);
   }
 
   // Polls unwrap the register of the camera's clock too, as in the scorer.
-  void on_poll(const DevicePoll& poll) override {
-    cameras_.at(poll.camera).unwrapper.unwrap(poll.device);
-    ForwardingSink::on_poll(poll);
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* pulse = std::get_if<PulseTruth>(&event)) {
+      pulses_.emplace_back(pulse->at, pulse->pulse);
+    } else if (const auto* poll = std::get_if<DevicePoll>(&event)) {
+      cameras_.at(poll->camera).unwrapper.unwrap(poll->device);
+    }
+    sink().on_event(event);
   }
 
   void on_stamp(const DeferredFrame& frame, GlobalTime global) override {
@@ -111,6 +106,17 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
   }
 
  private:
+  // Changes the truth to what the scorer is to get.
+  void keep(const FrameRecord& frame, FrameTruth* truth) {
+    if (truth == nullptr) {
+      throw RecordingFailed(
+          "the true exposure times of the frames are unknown: only a simulation has them");
+    }
+    CapturedCamera& camera = cameras_.at(frame.camera);
+    camera.exposed[camera.unwrapper.unwrap(frame.sensor)] = {truth->mid_exposure(), frame.counter};
+    if (!triggered_) truth->pulse = last_pulse_before(truth->mid_exposure());
+  }
+
   std::int64_t last_pulse_before(TrueTime time) const {
     const auto after =
         std::upper_bound(pulses_.begin(), pulses_.end(), time,
@@ -196,6 +202,7 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
   const bool triggered_;
   RigLayout layout_;
   std::vector<CapturedCamera> cameras_;
+  std::vector<FrameTruth> passed_;                         // scratch
   std::vector<std::pair<TrueTime, std::int64_t>> pulses_;  // in order of time
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/unverified_scores.h"
@@ -142,43 +143,21 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     ForwardingSink::on_start(layout);
   }
 
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    if (frame.stream == setup_.stream && frame.camera < companions_.size()) keep(frame, truth);
-    ForwardingSink::on_frame(frame, truth);
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    for_each_frame(frames, truths, [this](const FrameRecord& frame, const FrameTruth* truth) {
+      if (frame.stream == setup_.stream && frame.camera < companions_.size()) keep(frame, truth);
+    });
+    sink().on_frames(frames, truths);
   }
 
-  // RunWorld's own samples may be far apart.
-  void on_pulse(const PulseTruth& truth) override {
-    run_.clocks.push_back(clock_errors(truth.at, truth.host_errors));
-    ForwardingSink::on_pulse(truth);
-  }
-
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    for (std::size_t camera = 0; camera < companions_.size(); ++camera) {
-      if (run_.cameras[camera].host != adjustment.host) continue;
-      if (companions_[camera].from_start) companions_[camera].from_start->on_adjustment(adjustment);
-    }
-    ForwardingSink::on_adjustment(adjustment);
-  }
-
-  void on_poll(const DevicePoll& poll) override {
-    if (poll.camera < companions_.size()) {
-      Companion& companion = companions_[poll.camera];
-      const DeviceTime device = companion.unwrapper.unwrap(poll.device);
-      if (companion.from_start) {
-        companion.from_start->on_poll({device, poll.t0, poll.t1, poll.t0_steady, poll.t1_steady});
-      }
-    }
-    ForwardingSink::on_poll(poll);
-  }
-
-  void on_led_sighting(const LedSighting& sighting) override {
-    if (sighting.camera < companions_.size()) {
-      Companion& companion = companions_[sighting.camera];
-      const DeviceTime sensor = companion.unwrapper.unwrap(sighting.sensor);
-      if (companion.from_start) companion.from_start->on_led_sighting({sensor, sighting.middle()});
-    }
-    ForwardingSink::on_led_sighting(sighting);
+  void on_event(const RecordingEvent& event) override {
+    std::visit(
+        Overloaded{[this](const PulseTruth& pulse) { add(pulse); },
+                   [this](const ClockAdjustment& adjustment) { add(adjustment); },
+                   [this](const DevicePoll& poll) { add(poll); },
+                   [this](const LedSighting& sighting) { add(sighting); }, [](const auto&) {}},
+        event);
+    sink().on_event(event);
   }
 
   void on_stamp(const DeferredFrame& frame, GlobalTime global) override {
@@ -238,6 +217,34 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
   }
 
  private:
+  // RunWorld's own samples may be far apart.
+  void add(const PulseTruth& truth) {
+    run_.clocks.push_back(clock_errors(truth.at, truth.host_errors));
+  }
+
+  void add(const ClockAdjustment& adjustment) {
+    for (std::size_t camera = 0; camera < companions_.size(); ++camera) {
+      if (run_.cameras[camera].host != adjustment.host) continue;
+      if (companions_[camera].from_start) companions_[camera].from_start->on_adjustment(adjustment);
+    }
+  }
+
+  void add(const DevicePoll& poll) {
+    if (poll.camera >= companions_.size()) return;
+    Companion& companion = companions_[poll.camera];
+    const DeviceTime device = companion.unwrapper.unwrap(poll.device);
+    if (companion.from_start) {
+      companion.from_start->on_poll({device, poll.t0, poll.t1, poll.t0_steady, poll.t1_steady});
+    }
+  }
+
+  void add(const LedSighting& sighting) {
+    if (sighting.camera >= companions_.size()) return;
+    Companion& companion = companions_[sighting.camera];
+    const DeviceTime sensor = companion.unwrapper.unwrap(sighting.sensor);
+    if (companion.from_start) companion.from_start->on_led_sighting({sensor, sighting.middle()});
+  }
+
   double from_zero_ms(HostTime time) const { return to_ms(time - *zero_); }
   double from_zero_ms(GlobalTime time) const {
     return from_zero_ms(HostTime(time.time_since_epoch()));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include "algorithms/ports/assert.h"
 
@@ -71,10 +72,6 @@ void PipelineScorer::make_banks() {
     second_bank_ = make_bank(setup_.make_second_estimator, sources_.size());
   }
   if (offline_ || second_bank_) kept_.emplace(sources_.size(), expected_frames());
-}
-
-void PipelineScorer::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
-  on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
 }
 
 // Whether a frame precedes the evaluated part.
@@ -225,12 +222,28 @@ Nanoseconds PipelineScorer::anchor_shift() const {
   return anchor_.value_or(*first_arrival_).time_since_epoch();
 }
 
-void PipelineScorer::on_pulse(const PulseTruth& truth) {
+void PipelineScorer::on_event(const RecordingEvent& event) {
+  if (const auto* pulse = std::get_if<PulseTruth>(&event)) {
+    add(*pulse);
+  } else if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) {
+    add(*adjustment);
+  } else if (const auto* poll = std::get_if<DevicePoll>(&event)) {
+    add(*poll);
+  } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
+    add(*outcome);
+  } else if (const auto* report = std::get_if<AlignmentReport>(&event)) {
+    add(*report);
+  } else if (const auto* sighting = std::get_if<LedSighting>(&event)) {
+    add(*sighting);
+  }
+}
+
+void PipelineScorer::add(const PulseTruth& truth) {
   pulses_with_truth_ = true;
   if (table_->holds(truth.pulse)) host_errors_->add(truth.host_errors);
 }
 
-void PipelineScorer::on_adjustment(const ClockAdjustment& adjustment) {
+void PipelineScorer::add(const ClockAdjustment& adjustment) {
   if (adjustment.host >= cameras_of_host_.size()) return;  // a host without cameras
   for (const std::uint32_t camera : cameras_of_host_[adjustment.host]) {
     if (bank_) bank_->at(camera).on_adjustment(adjustment);
@@ -238,24 +251,22 @@ void PipelineScorer::on_adjustment(const ClockAdjustment& adjustment) {
   }
 }
 
-void PipelineScorer::on_poll(const DevicePoll& poll) {
+void PipelineScorer::add(const DevicePoll& poll) {
   const DeviceTime device = sources_[poll.camera].unwrapper.unwrap(poll.device);
   const PollSample sample = {device, poll.t0, poll.t1, poll.t0_steady, poll.t1_steady};
   if (bank_) bank_->at(poll.camera).on_poll(sample);
   if (second_bank_) second_bank_->at(poll.camera).on_poll(sample);
 }
 
-void PipelineScorer::on_exchange(std::uint32_t, const Exchange&) {}
-
-void PipelineScorer::on_outcome(const SyncOutcome& outcome) {
+void PipelineScorer::add(const SyncOutcome& outcome) {
   if (!outcome.synchronised) failures_.push_back(outcome);
 }
 
-void PipelineScorer::on_alignment(const AlignmentReport& report) {
+void PipelineScorer::add(const AlignmentReport& report) {
   if (alignment_) alignment_->add(report);
 }
 
-void PipelineScorer::on_led_sighting(const LedSighting& sighting) {
+void PipelineScorer::add(const LedSighting& sighting) {
   const LedSample sample = {sources_[sighting.camera].unwrapper.unwrap(sighting.sensor),
                             sighting.middle()};
   if (bank_) bank_->at(sighting.camera).on_led_sighting(sample);

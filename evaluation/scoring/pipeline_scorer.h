@@ -72,15 +72,8 @@ class PipelineScorer final : public RecordingSink {
 
   void on_start(const RigLayout& layout) override;
   // Throws RecordingFailed if an oracle of device_time or gathering gets a frame without the truth.
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
-  void on_pulse(const PulseTruth& truth) override;
-  void on_adjustment(const ClockAdjustment& adjustment) override;
-  void on_poll(const DevicePoll& poll) override;
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override;
-  void on_outcome(const SyncOutcome& outcome) override;
-  void on_alignment(const AlignmentReport& report) override;
-  void on_led_sighting(const LedSighting& sighting) override;
+  void on_event(const RecordingEvent& event) override;
 
   // Returns the scores of the capture with pulses, without seed and cost. Call once.
   SeedScore finish();
@@ -96,6 +89,12 @@ class PipelineScorer final : public RecordingSink {
     bool warm_up = false;
   };
 
+  void add(const PulseTruth& truth);
+  void add(const ClockAdjustment& adjustment);
+  void add(const DevicePoll& poll);
+  void add(const SyncOutcome& outcome);
+  void add(const AlignmentReport& report);
+  void add(const LedSighting& sighting);
   void make_banks();
   void learn_ground_truth(const FrameTruth* truth);
   Place place_of(Source& source, const FrameRecord& frame, const FrameTruth* truth,

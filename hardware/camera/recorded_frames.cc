@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "bags/recorded_files.h"
 #include "hardware/camera/camera.h"
@@ -86,7 +87,18 @@ class FrameKeeper final : public RecordingSink {
   explicit FrameKeeper(const Played& cameras) : cameras_(cameras) {}
 
   void on_start(const RigLayout& /*layout*/) override {}
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    for_each_frame(frames, truths, [this](const FrameRecord& frame, const FrameTruth* truth) {
+      add(frame, truth);
+    });
+  }
+  void on_event(const RecordingEvent& /*event*/) override {}
+
+  bool mixed() const { return with_truth_ && without_truth_; }
+  std::int64_t zero_ns() const { return first_exposure_.value_or(first_delivery_.value_or(0)); }
+
+ private:
+  void add(const FrameRecord& frame, const FrameTruth* truth) {
     (truth != nullptr ? with_truth_ : without_truth_) = true;
     const std::int64_t due =
         truth != nullptr ? true_delivery(frame, *truth) : nanoseconds_of(frame.arrival);
@@ -107,16 +119,6 @@ class FrameKeeper final : public RecordingSink {
          .stream = frame.stream,
          .domain = frame.domain});
   }
-  void on_pulse(const PulseTruth& /*truth*/) override {}
-  void on_adjustment(const ClockAdjustment& /*adjustment*/) override {}
-  void on_poll(const DevicePoll& /*poll*/) override {}
-  void on_exchange(std::uint32_t /*host*/, const Exchange& /*exchange*/) override {}
-  void on_outcome(const SyncOutcome& /*outcome*/) override {}
-
-  bool mixed() const { return with_truth_ && without_truth_; }
-  std::int64_t zero_ns() const { return first_exposure_.value_or(first_delivery_.value_or(0)); }
-
- private:
   static std::int64_t true_delivery(const FrameRecord& frame, const FrameTruth& truth) {
     return nanoseconds_of(truth.mid_exposure()) + (frame.arrival_steady - truth.own_steady).count();
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <queue>
 #include <utility>
-#include <variant>
 
 #include "hardware/node/journal.h"
 #include "recording/event_text.h"
@@ -34,7 +33,7 @@ void HostJournal::take(std::string_view line) {
     ++damaged_;
     return;
   }
-  const auto* frame = std::get_if<FrameEvent>(&events_.back());
+  const auto* frame = event_as<FrameEvent>(events_.back());
   if (frame == nullptr) return;
   ++frames_;
   const FrameRecord& record = frame->record;
@@ -57,9 +56,9 @@ void play_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink
   std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
   std::vector<std::size_t> next(journals.size(), 0);
   const auto push = [&](std::size_t host) {
-    const std::vector<RecordingEvent>& events = journals[host].events();
+    const std::vector<KeptEvent>& events = journals[host].events();
     if (next[host] == events.size()) return;
-    const auto* frame = std::get_if<FrameEvent>(&events[next[host]]);
+    const auto* frame = event_as<FrameEvent>(events[next[host]]);
     heads.emplace(frame != nullptr ? frame->record.arrival : HostTime::min(), host);
   };
   for (std::size_t host = 0; host < journals.size(); ++host) push(host);

@@ -25,7 +25,7 @@ class HostJournal {
   void append(std::string_view text);
 
   std::uint64_t bytes() const { return bytes_; }  // taken so far: the next offset to fetch
-  const std::vector<RecordingEvent>& events() const { return events_; }
+  const std::vector<KeptEvent>& events() const { return events_; }
   const std::vector<std::string>& notes() const { return notes_; }
   std::uint64_t damaged() const { return damaged_; }
   std::uint64_t frames() const { return frames_; }
@@ -44,7 +44,7 @@ class HostJournal {
 
   std::string rest_;  // the beginning of a line
   std::uint64_t bytes_ = 0;
-  std::vector<RecordingEvent> events_;
+  std::vector<KeptEvent> events_;
   std::vector<std::string> notes_;
   std::uint64_t damaged_ = 0;
   std::uint64_t frames_ = 0;

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "hardware/node/protocol.h"
@@ -98,7 +99,7 @@ Journal::Journal(boost::asio::io_context& context, const std::string& folder,
 
 Journal::~Journal() { close(); }
 
-void Journal::write(const RecordingEvent& event) {
+void Journal::write(const KeptEvent& event) {
   if (std::holds_alternative<FrameEvent>(event)) {
     ++frames_;
     if (failed_) ++frames_not_kept_;

@@ -57,7 +57,7 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  void write(const RecordingEvent& event);
+  void write(const KeptEvent& event);
   // Bytes that are no UTF-8 are replaced.
   void note(const std::string& text);
   // Writes the waiting batch now.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "reports/text/number_text.h"
 
@@ -36,20 +37,30 @@ void TraceRecorder::on_start(const RigLayout& layout) {
   ForwardingSink::on_start(layout);
 }
 
-void TraceRecorder::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
-  under_way_ = {};
-  under_way_.sensor = frame.sensor;
-  under_way_.reference = truth->reference;
-  under_way_key_ = {frame.camera, frame.sensor.us};
-  std::vector<Anchor>& anchors = anchors_[trace_.cameras[frame.camera].host];
-  if (anchors.empty() || truth->mid_exposure() - anchors.back().at >= kAnchorInterval) {
-    anchors.push_back({truth->own_steady, truth->mid_exposure()});
-  }
-  ForwardingSink::on_frame(frame, truth);
+// A block has one frame, as the world is observed (RecordingRequest::observer).
+void TraceRecorder::on_frames(std::span<const FrameRecord> frames,
+                              std::span<const FrameTruth> truths) {
+  for (std::size_t i = 0; i < frames.size(); ++i) add(frames[i], truths[i]);
+  ForwardingSink::on_frames(frames, truths);
 }
 
-void TraceRecorder::on_adjustment(const ClockAdjustment& adjustment) {
-  ForwardingSink::on_adjustment(adjustment);
+void TraceRecorder::add(const FrameRecord& frame, const FrameTruth& truth) {
+  under_way_ = {};
+  under_way_.sensor = frame.sensor;
+  under_way_.reference = truth.reference;
+  under_way_key_ = {frame.camera, frame.sensor.us};
+  std::vector<Anchor>& anchors = anchors_[trace_.cameras[frame.camera].host];
+  if (anchors.empty() || truth.mid_exposure() - anchors.back().at >= kAnchorInterval) {
+    anchors.push_back({truth.own_steady, truth.mid_exposure()});
+  }
+}
+
+void TraceRecorder::on_event(const RecordingEvent& event) {
+  ForwardingSink::on_event(event);
+  if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) add(*adjustment);
+}
+
+void TraceRecorder::add(const ClockAdjustment& adjustment) {
   std::vector<Anchor>& anchors = anchors_[adjustment.host];
   if (anchors.empty()) {  // the initial setting
     anchors.push_back({adjustment.at, trace_.world_start});

@@ -34,9 +34,8 @@ class TraceRecorder final : public ForwardingSink,
   TraceRecorder(evaluation::PipelineScorer& scorer, StreamKind scored, const TraceOptions& options);
 
   void on_start(const RigLayout& layout) override;
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
-  using ForwardingSink::on_pulse;
-  void on_adjustment(const ClockAdjustment& adjustment) override;
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
+  void on_event(const RecordingEvent& event) override;
 
   Nanoseconds clock_interval() const override;
   void on_world(TrueTime start) override;
@@ -82,6 +81,8 @@ class TraceRecorder final : public ForwardingSink,
     TrueTime at;
   };
 
+  void add(const FrameRecord& frame, const FrameTruth& truth);
+  void add(const ClockAdjustment& adjustment);
   template <class Thing>
   void take(std::vector<Thing>& list, Thing thing);
   template <class Function>

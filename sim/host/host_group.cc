@@ -130,7 +130,7 @@ void HostGroup::on_capture_start(const TriggerTree& trigger, std::int64_t last) 
 }
 
 void HostGroup::report_clocks() {
-  for (const SystemClock& clock : clocks_) sink_.on_adjustment(clock.present(engine_.now()));
+  for (const SystemClock& clock : clocks_) sink_.on_event(clock.present(engine_.now()));
 }
 
 }  // namespace simbench::sim

@@ -146,15 +146,17 @@ TrueTime SimHost::part_way(Nanoseconds left) const {
 }
 
 void SimHost::on_adjustment(const ClockAdjustment& adjustment) {
-  world_.sink.on_adjustment(adjustment);
+  world_.sink.on_event(adjustment);
   for (Sleeper& sleeper : sleepers_) sleeper.adjusted.notify();
 }
 
-void SimHost::report_exchange(const Exchange& exchange) { world_.sink.on_exchange(id_, exchange); }
+void SimHost::report_exchange(const Exchange& exchange) {
+  world_.sink.on_event(ExchangeEvent{id_, exchange});
+}
 
-void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_outcome(outcome); }
+void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_event(outcome); }
 
-void SimHost::report_alignment(const AlignmentReport& report) { world_.sink.on_alignment(report); }
+void SimHost::report_alignment(const AlignmentReport& report) { world_.sink.on_event(report); }
 
 std::optional<TrueTime> SimHost::next_look(SteadyTime deadline) const {
   const SteadyTime now = steady_port_.now();

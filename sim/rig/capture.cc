@@ -30,7 +30,7 @@ Capture::Capture(const scenarios::Scenario& scenario, Engine& engine,
       backend_stamps_(scenario.usb.backend_stamp, arrival_quantum_),
       interfaces_(std::move(interfaces)),
       stamps_on_host_(scenario.cameras.stamp_clock == scenarios::ClockOwner::kHost),
-      host_errors_(clocks_.size()) {
+      pulse_event_(PulseTruth{.host_errors = std::vector<Nanoseconds>(clocks_.size())}) {
   interfaces_.resize(clocks_.size(), ClockInterface({}, {}, {}));
 }
 
@@ -137,8 +137,11 @@ void Capture::report_through(TrueTime now) {
 void Capture::report_pulse(const CameraPulse& pulse) {
   const TrueTime at = date(pulse.at);
   if (pulse.slot >= slots_.first) {
-    read_errors(clocks_, at, host_errors_);
-    reports_.recorded_pulse({.pulse = pulse.slot, .at = at, .host_errors = host_errors_});
+    auto& truth = std::get<PulseTruth>(pulse_event_);
+    truth.pulse = pulse.slot;
+    truth.at = at;
+    read_errors(clocks_, at, truth.host_errors);
+    reports_.recorded(pulse_event_);
   }
   reports_.pulse(pulse.slot, at);
 }
@@ -197,10 +200,10 @@ void Capture::report_sighting(const CameraFrame& frame) {
   const auto lit = led_clock_->read(frame, world_->cameras().stream(frame.stream).readout);
   if (!lit) return;
   flush();
-  reports_.sighting({.camera = frame.camera,
-                     .sensor = records_.back().sensor,
-                     .led_start_ns = lit->start.count(),
-                     .led_end_ns = lit->end.count()});
+  reports_.recorded(LedSighting{.camera = frame.camera,
+                                .sensor = records_.back().sensor,
+                                .led_start_ns = lit->start.count(),
+                                .led_end_ns = lit->end.count()});
 }
 
 void Capture::report_single(std::size_t number) {

@@ -107,7 +107,7 @@ class Capture {
   std::vector<ClockInterface> interfaces_;
   bool stamps_on_host_;
   std::vector<SteadyTime> steady_starts_;  // what the hosts' steady clocks read at the start
-  std::vector<Nanoseconds> host_errors_;
+  RecordingEvent pulse_event_;             // a PulseTruth, reused for every pulse
   std::function<void()> on_end_;
   std::optional<LedClock> led_clock_;  // from the start on, where there is one
 

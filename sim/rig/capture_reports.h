@@ -61,13 +61,12 @@ class CaptureReports {
   void start(TrueTime at) const;
   // A pulse leaves the main trigger.
   void pulse(std::int64_t slot, TrueTime at) const;
-  // A pulse of the evaluated frames, for the recording.
-  void recorded_pulse(const PulseTruth& pulse) const { sink_.on_pulse(pulse); }
+  // What only the recording has: pulses of the evaluated frames, sightings of the LED clock.
+  void recorded(const RecordingEvent& event) const { sink_.on_event(event); }
   void poll(const DevicePoll& poll, std::uint32_t host) const {
-    sink_.on_poll(poll);
+    sink_.on_event(poll);
     if (feeds_ != nullptr) feeds_->on_poll(poll, host);
   }
-  void sighting(const LedSighting& sighting) const { sink_.on_led_sighting(sighting); }
   // Whether somebody besides the recording wants frames: then a block has one frame.
   bool are_single() const {
     return observer_ != nullptr || (feeds_ != nullptr && feeds_->is_used());

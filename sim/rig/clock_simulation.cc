@@ -1,5 +1,6 @@
 #include "sim/rig/clock_simulation.h"
 
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,12 +21,8 @@ using scenarios::Scenario;
 class NoRecording final : public RecordingSink {
  public:
   void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord&, const FrameTruth*) override {}
-  void on_pulse(const PulseTruth&) override {}
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome&) override {}
+  void on_frames(std::span<const FrameRecord>, std::span<const FrameTruth>) override {}
+  void on_event(const RecordingEvent&) override {}
 };
 
 // Counts the messages that leave before `end`.

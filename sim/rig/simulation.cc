@@ -31,28 +31,12 @@ class AfterCapture final : public ForwardingSink {
   using ForwardingSink::ForwardingSink;
   void follow(Capture& capture) { capture_ = &capture; }
 
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    catch_up();
-    ForwardingSink::on_adjustment(adjustment);
-  }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    catch_up();
-    ForwardingSink::on_exchange(host, exchange);
-  }
-  void on_outcome(const SyncOutcome& outcome) override {
-    catch_up();
-    ForwardingSink::on_outcome(outcome);
-  }
-  void on_alignment(const AlignmentReport& report) override {
-    catch_up();
-    ForwardingSink::on_alignment(report);
+  void on_event(const RecordingEvent& event) override {
+    if (capture_ != nullptr) capture_->catch_up();
+    sink().on_event(event);
   }
 
  private:
-  void catch_up() {
-    if (capture_ != nullptr) capture_->catch_up();
-  }
-
   Capture* capture_ = nullptr;
 };
 

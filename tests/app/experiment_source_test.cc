@@ -43,8 +43,7 @@ class ExperimentTruthTest : public testing::Test {
     played_.on_start({.hosts = 2, .cameras = {{0}, {1}}, .frame_rate_hz = 1, .pulses = 2});
     for (std::int64_t pulse = 0; pulse < 2; ++pulse) {
       const TrueTime at = TrueTime(std::chrono::seconds(3 + pulse));
-      const std::vector<Nanoseconds> errors(2);
-      played_.on_pulse({.pulse = pulse, .at = at, .host_errors = errors});
+      played_.on_event(PulseTruth{pulse, at, std::vector<Nanoseconds>(2)});
       for (std::uint32_t camera = 0; camera < 2; ++camera) {
         const FrameTruth truth = {
             .pulse = pulse, .exposure_start = at, .exposure_end = at + from_ms(8)};
@@ -65,10 +64,10 @@ class ExperimentTruthTest : public testing::Test {
     return record;
   }
   void log(std::uint32_t host, double at_s, double before_s, double after_s) {
-    captured_.on_adjustment({.host = host,
-                             .at = steady(at_s),
-                             .before = host_time(before_s == 0 ? after_s : before_s),
-                             .after = host_time(after_s)});
+    captured_.on_event(ClockAdjustment{.host = host,
+                                       .at = steady(at_s),
+                                       .before = host_time(before_s == 0 ? after_s : before_s),
+                                       .after = host_time(after_s)});
   }
   // A frame of `pulse` that reached its host at this reading of the host's steady clock.
   void capture(std::uint32_t camera, std::int64_t pulse, SteadyTime arrived) {
@@ -83,8 +82,8 @@ class ExperimentTruthTest : public testing::Test {
   template <class Event>
   static std::vector<Event> all(const KeptRecording& recording) {
     std::vector<Event> found;
-    for (const RecordingEvent& event : recording.events()) {
-      if (const auto* one = std::get_if<Event>(&event)) found.push_back(*one);
+    for (const KeptEvent& event : recording.events()) {
+      if (const auto* one = event_as<Event>(event)) found.push_back(*one);
     }
     return found;
   }
@@ -121,7 +120,7 @@ TEST_F(ExperimentTruthTest, AnotherHostsClocksAreItsOwn) {
 
 TEST_F(ExperimentTruthTest, HostErrorsFollowSkewAndSteps) {
   for (const double zero_s : {5.0, 9.5}) {
-    const std::vector<PulseEvent> pulses = all<PulseEvent>(recorded(zero_s));
+    const std::vector<PulseTruth> pulses = all<PulseTruth>(recorded(zero_s));
     ASSERT_THAT(pulses, SizeIs(2));
     for (std::size_t i = 0; i < 2; ++i) {
       const double at_s = zero_s + static_cast<double>(i);
@@ -132,13 +131,13 @@ TEST_F(ExperimentTruthTest, HostErrorsFollowSkewAndSteps) {
     }
   }
   // In numbers: 5 ms and 100 us after 5 s; 1 ms and 210 us after 10.5 s.
-  EXPECT_NEAR(to_ms(all<PulseEvent>(recorded(5))[0].host_errors[1]), 5.1, 2e-6);
-  EXPECT_NEAR(to_ms(all<PulseEvent>(recorded(9.5))[1].host_errors[1]), 1.21, 2e-6);
+  EXPECT_NEAR(to_ms(all<PulseTruth>(recorded(5))[0].host_errors[1]), 5.1, 2e-6);
+  EXPECT_NEAR(to_ms(all<PulseTruth>(recorded(9.5))[1].host_errors[1]), 1.21, 2e-6);
 }
 
 TEST_F(ExperimentTruthTest, TheLayoutIsThePlayedOneAndAllElseIsHandedOn) {
-  captured_.on_outcome(SyncOutcome());
-  captured_.on_exchange(1, Exchange());
+  captured_.on_event(SyncOutcome());
+  captured_.on_event(ExchangeEvent{.host = 1, .exchange = {}});
   const KeptRecording result = recorded(5);
   EXPECT_EQ(result.layout().frame_rate_hz, 1);
   EXPECT_EQ(result.layout().pulses, 2);
@@ -152,9 +151,9 @@ TEST_F(ExperimentTruthTest, PulsesAreToldBeforeTheFramesThatFollowThem) {
   capture(0, 1, steady(6.05));
   std::string order;
   const KeptRecording result = recorded(5);
-  for (const RecordingEvent& event : result.events()) {
-    if (std::holds_alternative<PulseEvent>(event)) order += 'p';
-    if (std::holds_alternative<FrameEvent>(event)) order += 'f';
+  for (const KeptEvent& event : result.events()) {
+    if (event_as<PulseTruth>(event) != nullptr) order += 'p';
+    if (event_as<FrameEvent>(event) != nullptr) order += 'f';
   }
   EXPECT_EQ(order, "pfpf");
 }

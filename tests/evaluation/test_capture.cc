@@ -25,9 +25,9 @@ TestCapture::TestCapture(std::uint32_t hosts, std::uint32_t cameras_per_host) {
 
 void TestCapture::record(RecordingSink& sink) const {
   sink.on_start(layout);
-  for (const SyncOutcome& outcome : outcomes) sink.on_outcome(outcome);
+  for (const SyncOutcome& outcome : outcomes) sink.on_event(outcome);
   for (std::int64_t pulse = 0; pulse < layout.first_pulse + layout.pulses; ++pulse) {
-    if (with_truth) sink.on_pulse({.pulse = pulse, .at = at(pulse), .host_errors = host_errors});
+    if (with_truth) sink.on_event(PulseTruth{pulse, at(pulse), host_errors});
     for (std::uint32_t camera = 0; camera < layout.cameras.size(); ++camera) {
       if (!lost || !lost(camera, pulse)) deliver(camera, pulse, sink);
     }

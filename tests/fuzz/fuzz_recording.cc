@@ -62,9 +62,9 @@ class Folder {
                      .pulses = 10});
       for (std::uint32_t i = 0; i < 3; ++i) {
         sink.on_frame({}, nullptr);
-        sink.on_outcome({});
-        sink.on_alignment({});
-        sink.on_led_sighting({});
+        sink.on_event(simbench::SyncOutcome{});
+        sink.on_event(simbench::AlignmentReport{});
+        sink.on_event(simbench::LedSighting{});
       }
       if (seed == 1) {
         writer.end({});

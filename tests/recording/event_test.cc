@@ -5,7 +5,10 @@
 
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "tests/recording/test_sink.h"
 
 namespace simbench {
 namespace {
@@ -13,36 +16,40 @@ namespace {
 using ::testing::ElementsAre;
 
 // Writes what it is given as lines, so that order and values can be compared.
-class Transcript final : public RecordingSink {
+class Transcript final : public TestSink {
  public:
   void on_start(const RigLayout& layout) override { add("start", layout.cameras.size()); }
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    add("frame", frame.camera, frame.sensor.us, nanoseconds_of(frame.arrival),
-        truth != nullptr ? truth->pulse : -1);
-  }
-  void on_pulse(const PulseTruth& truth) override {
-    add("pulse", truth.pulse, truth.host_errors[0].count(), truth.host_errors[1].count());
-  }
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    add("adjustment", adjustment.host, nanoseconds_of(adjustment.after));
-  }
-  void on_poll(const DevicePoll& poll) override {
-    add("poll", poll.camera, poll.device.us, nanoseconds_of(poll.t0), nanoseconds_of(poll.t1));
-  }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    add("exchange", host, exchange.peer, exchange.t1 ? "t1" : "", exchange.t2 ? "t2" : "");
-  }
-  void on_outcome(const SyncOutcome& outcome) override { add("outcome", outcome.message); }
-  void on_alignment(const AlignmentReport& report) override {
-    add("alignment", report.camera, report.aligned, report.controls, report.message);
-  }
-  void on_led_sighting(const LedSighting& sighting) override {
-    add("led", sighting.camera, sighting.sensor.us, sighting.led_start_ns, sighting.led_end_ns);
+  void on_event(const RecordingEvent& event) override {
+    std::visit([this](const auto& each) { write(each); }, event);
   }
 
   std::vector<std::string> lines;
 
  private:
+  void frame_came(const FrameRecord& frame, const FrameTruth* truth) override {
+    add("frame", frame.camera, frame.sensor.us, nanoseconds_of(frame.arrival),
+        truth != nullptr ? truth->pulse : -1);
+  }
+  void write(const PulseTruth& truth) {
+    add("pulse", truth.pulse, truth.host_errors[0].count(), truth.host_errors[1].count());
+  }
+  void write(const ClockAdjustment& adjustment) {
+    add("adjustment", adjustment.host, nanoseconds_of(adjustment.after));
+  }
+  void write(const DevicePoll& poll) {
+    add("poll", poll.camera, poll.device.us, nanoseconds_of(poll.t0), nanoseconds_of(poll.t1));
+  }
+  void write(const ExchangeEvent& event) {
+    add("exchange", event.host, event.exchange.peer, event.exchange.t1 ? "t1" : "",
+        event.exchange.t2 ? "t2" : "");
+  }
+  void write(const SyncOutcome& outcome) { add("outcome", outcome.message); }
+  void write(const AlignmentReport& report) {
+    add("alignment", report.camera, report.aligned, report.controls, report.message);
+  }
+  void write(const LedSighting& sighting) {
+    add("led", sighting.camera, sighting.sensor.us, sighting.led_start_ns, sighting.led_end_ns);
+  }
   template <class... Values>
   void add(const Values&... values) {
     std::ostringstream line;
@@ -61,26 +68,30 @@ FrameRecord frame_of(std::uint32_t camera, std::uint32_t sensor_us, std::int64_t
 
 void record_something(RecordingSink& sink) {
   sink.on_start({.hosts = 2, .cameras = {{0}, {1}}, .frame_rate_hz = 50});
-  sink.on_exchange(1, {.peer = 0, .t1 = {}, .t2 = HostTime(Nanoseconds(7)), .t3 = {}, .t4 = {}});
-  sink.on_adjustment({.host = 1, .at = {}, .before = {}, .after = HostTime(Nanoseconds(9))});
-  sink.on_poll({.camera = 1,
-                .device = {77},
-                .t0 = HostTime(Nanoseconds(3)),
-                .t1 = HostTime(Nanoseconds(4)),
-                .t0_steady = {},
-                .t1_steady = {}});
-  sink.on_outcome({.slave = 1, .synchronised = false, .passes = 200, .message = "no answer"});
-  sink.on_alignment({.camera = 1, .aligned = true, .controls = 12, .message = "near"});
+  sink.on_event(ExchangeEvent{
+      .host = 1,
+      .exchange = {.peer = 0, .t1 = {}, .t2 = HostTime(Nanoseconds(7)), .t3 = {}, .t4 = {}}});
+  sink.on_event(
+      ClockAdjustment{.host = 1, .at = {}, .before = {}, .after = HostTime(Nanoseconds(9))});
+  sink.on_event(DevicePoll{.camera = 1,
+                           .device = {77},
+                           .t0 = HostTime(Nanoseconds(3)),
+                           .t1 = HostTime(Nanoseconds(4)),
+                           .t0_steady = {},
+                           .t1_steady = {}});
+  sink.on_event(SyncOutcome{1, false, 200, "no answer"});
+  sink.on_event(AlignmentReport{1, true, 12, "near"});
   FrameTruth truth;
   truth.pulse = 4;
   sink.on_frame(frame_of(1, 100, 2000), &truth);
-  // A sink may reuse the memory of the errors for the next pulse.
-  std::vector<Nanoseconds> errors = {Nanoseconds(0), Nanoseconds(-5)};
-  sink.on_pulse({.pulse = 4, .at = {}, .host_errors = errors});
-  errors[1] = Nanoseconds(6);
-  sink.on_pulse({.pulse = 5, .at = {}, .host_errors = errors});
+  // Whoever reports pulses may change one event for the next.
+  RecordingEvent pulse = PulseTruth{4, {}, {Nanoseconds(0), Nanoseconds(-5)}};
+  sink.on_event(pulse);
+  std::get<PulseTruth>(pulse).pulse = 5;
+  std::get<PulseTruth>(pulse).host_errors[1] = Nanoseconds(6);
+  sink.on_event(pulse);
   sink.on_frame(frame_of(0, 101, 1999), nullptr);
-  sink.on_led_sighting({.camera = 0, .sensor = {101}, .led_start_ns = -2, .led_end_ns = 5});
+  sink.on_event(LedSighting{.camera = 0, .sensor = {101}, .led_start_ns = -2, .led_end_ns = 5});
 }
 
 TEST(KeptRecordingTest, PlaysEverythingBackInOrder) {
@@ -114,17 +125,31 @@ TEST(KeptRecordingTest, BeginsAnewWithTheNextCapture) {
   EXPECT_EQ(kept.layout().cameras.size(), 1U);
 }
 
-TEST(RecordingSinkTest, TakesABlockFrameByFrame) {
+TEST(KeptRecordingTest, KeepsABlockFrameByFrame) {
   std::vector<FrameRecord> frames(2);
   frames[1].camera = 3;
   std::vector<FrameTruth> truths(2);
   truths[1].pulse = 8;
-  Transcript simulated;
-  simulated.on_frames(frames, truths);
-  EXPECT_THAT(simulated.lines, ElementsAre("frame 0 0 0 -1 ", "frame 3 0 0 8 "));
-  Transcript of_a_rig;
-  of_a_rig.on_frames(frames, {});
-  EXPECT_THAT(of_a_rig.lines, ElementsAre("frame 0 0 0 -1 ", "frame 3 0 0 -1 "));
+  KeptRecording kept;
+  kept.on_frames(frames, truths);
+  kept.on_frames(frames, {});
+  Transcript played;
+  kept.play(played);
+  EXPECT_THAT(played.lines, ElementsAre("start 0 ", "frame 0 0 0 -1 ", "frame 3 0 0 8 ",
+                                        "frame 0 0 0 -1 ", "frame 3 0 0 -1 "));
+}
+
+TEST(KeptEventTest, IsOneOfItsTypes) {
+  const KeptEvent frame = FrameEvent{};
+  EXPECT_NE(event_as<FrameEvent>(frame), nullptr);
+  EXPECT_EQ(event_as<DevicePoll>(frame), nullptr);
+  DevicePoll of_camera_4;
+  of_camera_4.camera = 4;
+  const KeptEvent poll = of_camera_4;
+  ASSERT_NE(event_as<DevicePoll>(poll), nullptr);
+  EXPECT_EQ(event_as<DevicePoll>(poll)->camera, 4U);
+  EXPECT_EQ(event_as<SyncOutcome>(poll), nullptr);
+  EXPECT_EQ(event_as<FrameEvent>(poll), nullptr);
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ TEST(EventTextTest, AFrameWithAndWithoutTruth) {
 }
 
 TEST(EventTextTest, TheOtherKinds) {
-  EXPECT_EQ(to_line(PulseEvent{3, at<TrueTime>(9), {Nanoseconds(0), Nanoseconds(-5)}}),
+  EXPECT_EQ(to_line(PulseTruth{3, at<TrueTime>(9), {Nanoseconds(0), Nanoseconds(-5)}}),
             "pulse,3,9,0;-5");
-  EXPECT_EQ(to_line(PulseEvent{3, at<TrueTime>(9), {}}), "pulse,3,9,");
+  EXPECT_EQ(to_line(PulseTruth{3, at<TrueTime>(9), {}}), "pulse,3,9,");
   EXPECT_EQ(to_line(ClockAdjustment{1, at<SteadyTime>(1), at<HostTime>(2), at<HostTime>(3), 0.1}),
             "adjustment,1,1,2,3,0.1");
   EXPECT_EQ(to_line(DevicePoll{
@@ -78,7 +78,7 @@ TEST(EventTextTest, ReadsBackWhateverWasWritten) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937_64 random(seed);
   for (int i = 0; i < 50'000; ++i) {
-    const RecordingEvent event = random_event(random);
+    const KeptEvent event = random_event(random);
     const std::string line = to_line(event);
     ASSERT_EQ(line.find_first_of("\n\r"), std::string::npos) << line;
     ASSERT_TRUE(same(from_line(line), event)) << line;
@@ -106,7 +106,7 @@ TEST(EventTextTest, WhatIsReadIsWhatWouldBeWritten) {
         line.erase(place, 1 + random() % 3);
     }
     try {
-      const RecordingEvent event = from_line(line);
+      const KeptEvent event = from_line(line);
       ++read;
       ASSERT_EQ(to_line(event), line);
     } catch (const EventTextError&) {

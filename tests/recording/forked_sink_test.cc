@@ -8,6 +8,7 @@
 
 #include "recording/event.h"
 #include "tests/recording/random_events.h"
+#include "tests/recording/test_sink.h"
 
 namespace simbench {
 namespace {
@@ -29,25 +30,19 @@ void expect_all_of(const KeptRecording& a, const KeptRecording& b) {
 }
 
 // Fails at a given frame.
-class Failing final : public RecordingSink {
+class Failing final : public TestSink {
  public:
   explicit Failing(int frame) : left_(frame) {}
-  void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord&, const FrameTruth*) override {
+  void on_event(const RecordingEvent&) override { EXPECT_FALSE(has_failed_); }
+
+ private:
+  void frame_came(const FrameRecord&, const FrameTruth*) override {
     EXPECT_FALSE(has_failed_);
     if (left_-- > 0) return;
     has_failed_ = true;
     throw std::runtime_error("no more frames");
   }
-  void on_pulse(const PulseTruth&) override { EXPECT_FALSE(has_failed_); }
-  void on_adjustment(const ClockAdjustment&) override { EXPECT_FALSE(has_failed_); }
-  void on_poll(const DevicePoll&) override { EXPECT_FALSE(has_failed_); }
-  void on_exchange(std::uint32_t, const Exchange&) override { EXPECT_FALSE(has_failed_); }
-  void on_outcome(const SyncOutcome&) override { EXPECT_FALSE(has_failed_); }
-  void on_alignment(const AlignmentReport&) override { EXPECT_FALSE(has_failed_); }
-  void on_led_sighting(const LedSighting&) override { EXPECT_FALSE(has_failed_); }
 
- private:
   int left_;
   bool has_failed_ = false;
 };

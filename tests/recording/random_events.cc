@@ -93,6 +93,9 @@ auto members(const Members&... values) {
 }
 
 struct Same {
+  bool operator()(const RecordingEvent& a, const RecordingEvent& b) const {
+    return std::visit(*this, a, b);
+  }
   bool operator()(const FrameEvent& a, const FrameEvent& b) const {
     const auto record = [](const FrameRecord& r) {
       return members(r.camera, r.stream, r.domain, r.counter, r.exposure_us, r.sensor.us,
@@ -105,7 +108,7 @@ struct Same {
     return record(a.record) == record(b.record) && a.truth.has_value() == b.truth.has_value() &&
            (!a.truth || truth(*a.truth) == truth(*b.truth));
   }
-  bool operator()(const PulseEvent& a, const PulseEvent& b) const {
+  bool operator()(const PulseTruth& a, const PulseTruth& b) const {
     return a.pulse == b.pulse && a.at == b.at && a.host_errors == b.host_errors;
   }
   bool operator()(const ClockAdjustment& a, const ClockAdjustment& b) const {
@@ -153,11 +156,11 @@ struct Same {
 
 }  // namespace
 
-RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
+KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
   const auto host = [&] { return any_number<std::uint32_t>(random) % bounds.hosts; };
   switch (random() % 8) {
     case 0: {
-      PulseEvent event;
+      PulseTruth event;
       event.pulse = any_number<std::int64_t>(random);
       set_any(event.at, random);
       const std::uint64_t errors = bounds.hosts < 100 ? bounds.hosts : random() % 5;
@@ -209,7 +212,7 @@ RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
   }
 }
 
-bool same(const RecordingEvent& a, const RecordingEvent& b) { return std::visit(Same{}, a, b); }
+bool same(const KeptEvent& a, const KeptEvent& b) { return std::visit(Same{}, a, b); }
 
 bool same(const RigLayout& a, const RigLayout& b) {
   const auto all = [](const RigLayout& l) {

@@ -14,10 +14,10 @@ struct RandomEventBounds {
   std::uint32_t cameras = 0xffffffff;
 };
 
-RecordingEvent random_event(std::mt19937_64& random, const RandomEventBounds& bounds = {});
+KeptEvent random_event(std::mt19937_64& random, const RandomEventBounds& bounds = {});
 
 // Member by member, doubles bit by bit.
-bool same(const RecordingEvent& a, const RecordingEvent& b);
+bool same(const KeptEvent& a, const KeptEvent& b);
 bool same(const RigLayout& a, const RigLayout& b);
 
 }  // namespace simbench

@@ -35,8 +35,8 @@ std::size_t lines_in(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-std::vector<RecordingEvent> numbered_events(int count) {
-  std::vector<RecordingEvent> events;
+std::vector<KeptEvent> numbered_events(int count) {
+  std::vector<KeptEvent> events;
   for (int i = 0; i < count; ++i) {
     if (i % 3 == 0) {
       events.emplace_back(SyncOutcome{1, true, static_cast<std::uint32_t>(i), "a\\b,\n"});
@@ -55,18 +55,18 @@ class RecordingDeathTest : public testing::Test {
   std::string path(const std::string& name) const { return scratch_ / name; }
 
   // As a writer that died leaves it.
-  void write_without_end(const std::string& name, const std::vector<RecordingEvent>& events) const {
+  void write_without_end(const std::string& name, const std::vector<KeptEvent>& events) const {
     RecordingWriter writer(path(name), {.backend = "sim"});
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
-    for (const RecordingEvent& event : events) notify(event, sink);
+    for (const KeptEvent& event : events) notify(event, sink);
   }
 
   // All that was played is among what was recorded, in its order.
-  static void expect_part_of(const std::vector<RecordingEvent>& played,
-                             const std::vector<RecordingEvent>& recorded) {
+  static void expect_part_of(const std::vector<KeptEvent>& played,
+                             const std::vector<KeptEvent>& recorded) {
     std::size_t at = 0;
-    for (const RecordingEvent& event : played) {
+    for (const KeptEvent& event : played) {
       while (at < recorded.size() && !same(recorded[at], event)) ++at;
       ASSERT_LT(at, recorded.size()) << "an event that was not recorded";
       ++at;
@@ -78,7 +78,7 @@ class RecordingDeathTest : public testing::Test {
 };
 
 TEST_F(RecordingDeathTest, CutAtEveryByteTheWholeLinesBeforeAreThere) {
-  const std::vector<RecordingEvent> events = numbered_events(12);
+  const std::vector<KeptEvent> events = numbered_events(12);
   write_without_end("r", events);
   for (const std::string name : {"frames.csv", "events.csv"}) {
     const std::string file = path("r/p/1/" + name);
@@ -99,12 +99,12 @@ TEST_F(RecordingDeathTest, CutAtEveryByteTheWholeLinesBeforeAreThere) {
 }
 
 TEST_F(RecordingDeathTest, ACompleteCaptureCutAtAnyByteIsDamagedNotCrashed) {
-  const std::vector<RecordingEvent> events = numbered_events(12);
+  const std::vector<KeptEvent> events = numbered_events(12);
   {
     RecordingWriter writer(path("r"), {.backend = "sim"});
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
-    for (const RecordingEvent& event : events) notify(event, sink);
+    for (const KeptEvent& event : events) notify(event, sink);
     writer.end({});
   }
   for (const std::string name : {"frames.csv", "events.csv"}) {
@@ -139,14 +139,14 @@ TEST_F(RecordingDeathTest, AManifestCutAtAnyByteIsNamed) {
 }
 
 TEST_F(RecordingDeathTest, AKilledWriterLosesAtMostItsLastThousand) {
-  const std::vector<RecordingEvent> events = numbered_events(3456);
+  const std::vector<KeptEvent> events = numbered_events(3456);
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
     RecordingWriter writer(path("r"), {.backend = "sim"});
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
-    for (const RecordingEvent& event : events) notify(event, sink);
+    for (const KeptEvent& event : events) notify(event, sink);
     raise(SIGKILL);
   }
   int status = 0;
@@ -169,9 +169,9 @@ TEST_F(RecordingDeathTest, WhatIsOlderThanTheIntervalIsInTheKernelWithTheNextEve
   RecordingWriter writer(path("r"), {.backend = "sim"});
   RecordingSink& sink = writer.begin("p", 1);
   sink.on_start(layout());
-  sink.on_outcome({1, true, 1, ""});
+  sink.on_event(SyncOutcome{1, true, 1, ""});
   usleep(110'000);
-  sink.on_outcome({1, true, 2, ""});
+  sink.on_event(SyncOutcome{1, true, 2, ""});
   KeptRecording kept;
   RecordingFolder(path("r")).play(0, kept);
   EXPECT_EQ(kept.events().size(), 2U);
@@ -199,7 +199,7 @@ class FullDisk {
 
 TEST_F(RecordingDeathTest, AFullDiskIsReportedAndTheRestIsReadable) {
   constexpr std::size_t kRoom = 50'000;
-  const std::vector<RecordingEvent> events = numbered_events(10'000);
+  const std::vector<KeptEvent> events = numbered_events(10'000);
   std::string error = "no error";
   std::string after = "no error";
   {
@@ -208,7 +208,7 @@ TEST_F(RecordingDeathTest, AFullDiskIsReportedAndTheRestIsReadable) {
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
     try {
-      for (const RecordingEvent& event : events) notify(event, sink);
+      for (const KeptEvent& event : events) notify(event, sink);
     } catch (const RecordingFolderError& thrown) {
       error = thrown.what();
     }

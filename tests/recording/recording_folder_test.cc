@@ -37,22 +37,21 @@ RecordingDescription description() {
           .cameras = {"0815", "0816", "0817", "ä \"q\""}};
 }
 
-std::vector<RecordingEvent> some_events(std::mt19937_64& random, int count) {
-  std::vector<RecordingEvent> events;
+std::vector<KeptEvent> some_events(std::mt19937_64& random, int count) {
+  std::vector<KeptEvent> events;
   while (count-- > 0) events.push_back(random_event(random, {.hosts = 3, .cameras = 4}));
   return events;
 }
 
-void write_events(const std::string& folder, const std::vector<RecordingEvent>& events) {
+void write_events(const std::string& folder, const std::vector<KeptEvent>& events) {
   RecordingWriter writer(folder, description());
   RecordingSink& sink = writer.begin("p", 1);
   sink.on_start(kLayout);
-  for (const RecordingEvent& event : events) notify(event, sink);
+  for (const KeptEvent& event : events) notify(event, sink);
   writer.end({.events = 5, .simulated_seconds = 16.5, .trace_hash = ~std::uint64_t{0}});
 }
 
-void expect_same(const std::vector<RecordingEvent>& played,
-                 const std::vector<RecordingEvent>& recorded) {
+void expect_same(const std::vector<KeptEvent>& played, const std::vector<KeptEvent>& recorded) {
   ASSERT_EQ(played.size(), recorded.size());
   for (std::size_t i = 0; i < played.size(); ++i) {
     ASSERT_TRUE(same(played[i], recorded[i])) << "event " << i;
@@ -104,7 +103,7 @@ TEST_F(RecordingFolderTest, PlaysWhatWasRecorded) {
   const auto seed = std::random_device{}();
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937_64 random(seed);
-  std::vector<RecordingEvent> events = some_events(random, 5000);
+  std::vector<KeptEvent> events = some_events(random, 5000);
   write_events(path("r"), events);
 
   const RecordingFolder folder(path("r"));
@@ -137,7 +136,7 @@ TEST_F(RecordingFolderTest, CapturesAreFoundByPipelineAndSeed) {
     for (const std::uint64_t seed : {std::uint64_t{1}, ~std::uint64_t{0}}) {
       RecordingSink& sink = writer.begin(pipeline, seed);
       sink.on_start(kLayout);
-      sink.on_outcome({1, true, 0, pipeline + std::to_string(seed)});
+      sink.on_event(SyncOutcome{1, true, 0, pipeline + std::to_string(seed)});
       writer.end({.notes = {"unplugged"}}, {"host 2 was lost"});
     }
   }
@@ -152,7 +151,7 @@ TEST_F(RecordingFolderTest, CapturesAreFoundByPipelineAndSeed) {
   EXPECT_THAT(folder.captures()[*found].notes, ElementsAre("unplugged", "host 2 was lost"));
   KeptRecording kept;
   folder.play(*found, kept);
-  EXPECT_EQ(std::get<SyncOutcome>(kept.events().at(0)).message, odd + "18446744073709551615");
+  EXPECT_EQ(event_as<SyncOutcome>(kept.events().at(0))->message, odd + "18446744073709551615");
 }
 
 TEST_F(RecordingFolderTest, TheRecordedSourcePlaysThem) {
@@ -170,9 +169,9 @@ TEST_F(RecordingFolderTest, TheRecordedSourcePlaysThem) {
 
 TEST_F(RecordingFolderTest, NothingIsWrittenWithoutAStart) {
   RecordingWriter writer(path("r"), description());
-  writer.begin("p", 1).on_outcome({});
+  writer.begin("p", 1).on_event(SyncOutcome{});
   writer.end({});
-  writer.begin("q", 1).on_outcome({});
+  writer.begin("q", 1).on_event(SyncOutcome{});
   writer.abandon();
   EXPECT_THAT(RecordingFolder(path("r")).captures(), IsEmpty());
   EXPECT_FALSE(fs::exists(path("r/p")));
@@ -182,7 +181,7 @@ TEST_F(RecordingFolderTest, AnAbandonedCaptureIsIncomplete) {
   RecordingWriter writer(path("r"), description());
   RecordingSink& sink = writer.begin("p", 1);
   sink.on_start(kLayout);
-  sink.on_outcome({1, true, 0, "before"});
+  sink.on_event(SyncOutcome{1, true, 0, "before"});
   writer.abandon({"host 2 was lost"});
   const RecordingFolder folder(path("r"));
   EXPECT_FALSE(folder.captures().at(0).complete);
@@ -222,7 +221,7 @@ TEST_F(RecordingFolderTest, AFolderThatIsNoRecordingSaysSo) {
 }
 
 TEST_F(RecordingFolderTest, DamagedLinesAreNamed) {
-  std::vector<RecordingEvent> events;
+  std::vector<KeptEvent> events;
   for (std::uint32_t i = 0; i < 10; ++i) events.emplace_back(SyncOutcome{1, true, i, ""});
   const auto error_with = [&](const std::string& from, const std::string& to) {
     fs::remove_all(path("r"));
@@ -255,7 +254,7 @@ TEST_F(RecordingFolderTest, DamagedLinesAreNamed) {
 
 TEST_F(RecordingFolderTest, WhatComesBeforeTheDamageIsPlayed) {
   std::mt19937_64 random(3);
-  std::vector<RecordingEvent> events = some_events(random, 200);
+  std::vector<KeptEvent> events = some_events(random, 200);
   write_events(path("r"), events);
   std::string text = content(path("r/p/1/frames.csv"));
   const std::size_t line = text.find('\n', text.size() / 2) + 1;
@@ -294,7 +293,7 @@ TEST_F(RecordingFolderTest, AnEndlessLineIsRefused) {
 TEST_F(RecordingFolderTest, AReadErrorAtAnyByteIsAnError) {
   const std::string folder = path("r");
   std::mt19937_64 random(7);
-  const std::vector<RecordingEvent> events = some_events(random, 40);
+  const std::vector<KeptEvent> events = some_events(random, 40);
   write_events(folder, events);
   std::size_t size = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {

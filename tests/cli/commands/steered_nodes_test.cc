@@ -74,8 +74,8 @@ class SteeredNodes : public ProgramTest, public testing::WithParamInterface<cons
   static std::vector<double> distances_ms(const KeptRecording& recording,
                                           const std::vector<hardware::HostReport>& hosts) {
     std::vector<double> of_camera_ms[2];
-    for (const RecordingEvent& event : recording.events()) {
-      const auto* frame = std::get_if<FrameEvent>(&event);
+    for (const KeptEvent& event : recording.events()) {
+      const auto* frame = event_as<FrameEvent>(event);
       if (frame == nullptr) continue;
       const std::uint32_t camera = frame->record.camera;
       const auto arrived = hosts[camera].oscillator.when(frame->record.arrival_steady);
@@ -121,8 +121,8 @@ TEST_P(SteeredNodes, ExposuresComeTogether) {
   EXPECT_LT(*std::max_element(half, distances.begin() + kFrames), 0.2);
 
   std::vector<AlignmentReport> reports;
-  for (const RecordingEvent& event : recording.events()) {
-    if (const auto* report = std::get_if<AlignmentReport>(&event)) reports.push_back(*report);
+  for (const KeptEvent& event : recording.events()) {
+    if (const auto* report = event_as<AlignmentReport>(event)) reports.push_back(*report);
   }
   EXPECT_THAT(reports, Contains(testing::Field(&AlignmentReport::aligned, true)));
   for (const std::uint32_t camera : {0U, 1U}) {

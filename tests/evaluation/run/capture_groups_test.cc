@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
@@ -102,7 +103,7 @@ std::vector<std::string> recorded_by(const std::vector<scenarios::Override>& cha
   const RigLayout& layout = recording.layout();
   std::vector<std::string> lines = {
       fmt::format("{} {} {}", layout.frame_rate_hz, layout.first_pulse, layout.pulses)};
-  for (const RecordingEvent& event : recording.events()) lines.push_back(to_line(event));
+  for (const KeptEvent& event : recording.events()) lines.push_back(to_line(event));
   return lines;
 }
 
@@ -217,7 +218,9 @@ TEST(SharedCaptures, EachIsScoredAsItsOwnScenarioSays) {
 class BrokenSink final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
-  void on_pulse(const PulseTruth&) override { throw std::runtime_error("a pulse too many"); }
+  void on_event(const RecordingEvent& event) override {
+    if (std::holds_alternative<PulseTruth>(event)) throw std::runtime_error("a pulse too many");
+  }
 };
 
 TEST(SharedCaptures, AnErrorNamesThePipelineThatHadIt) {

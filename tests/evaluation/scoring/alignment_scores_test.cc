@@ -33,7 +33,7 @@ struct SteeredCapture : TestCapture {
     setup.unsteady_start = unsteady_start;
     PipelineScorer scorer(setup);
     record(scorer);
-    for (const AlignmentReport& report : reports) scorer.on_alignment(report);
+    for (const AlignmentReport& report : reports) scorer.on_event(report);
     return scorer.finish();
   }
 
@@ -287,7 +287,7 @@ TEST(AlignmentScores, OtherCapturesHaveNone) {
   const SteeredCapture steered;
   PipelineScorer scorer(arrival_setup());
   steered.record(scorer);
-  scorer.on_alignment({.camera = 1, .aligned = true});
+  scorer.on_event(AlignmentReport{.camera = 1, .aligned = true});
   EXPECT_THAT(nonempty(all_of(scorer.finish())), Each(IsNan()));
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "algorithms/device_time/yoon2021.h"
 #include "algorithms/gathering/gatherers.h"
@@ -31,10 +33,10 @@ class Edited final : public ForwardingSink {
  public:
   Edited(RecordingSink& sink, std::function<void(FrameRecord&)> edit)
       : ForwardingSink(sink), edit_(std::move(edit)) {}
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    FrameRecord edited = frame;
-    edit_(edited);
-    sink().on_frame(edited, truth);
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    std::vector<FrameRecord> edited(frames.begin(), frames.end());
+    for (FrameRecord& frame : edited) edit_(frame);
+    sink().on_frames(edited, truths);
   }
 
  private:
@@ -156,7 +158,7 @@ TEST(PipelineScorerUnverified, HostErrorsExistWhereSomebodyKnowsThem) {
   scorer.on_start(capture.layout);
   const std::vector<Nanoseconds> errors = {Nanoseconds(0), from_ms(-3)};
   for (std::int64_t pulse = 0; pulse < 13; ++pulse) {
-    scorer.on_pulse({.pulse = pulse, .at = TestCapture::at(pulse), .host_errors = errors});
+    scorer.on_event(PulseTruth{pulse, TestCapture::at(pulse), errors});
     for (std::uint32_t camera = 0; camera < 2; ++camera) capture.deliver(camera, pulse, scorer);
   }
   const SeedScore seed = scorer.finish();

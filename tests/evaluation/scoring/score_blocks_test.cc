@@ -79,21 +79,20 @@ KeptRecording noisy_capture(std::uint32_t seed, bool with_truth) {
   for (const Delivered& one : delivered_frames(random)) {
     const std::int64_t now_ns = nanoseconds_of(one.frame.arrival_steady);
     if (now_ns > 1'000'000'000 + pulse * kBlockPeriodNs) {
-      const Nanoseconds errors[] = {Nanoseconds(0), Nanoseconds(1000)};
-      if (with_truth) kept.on_pulse({.pulse = pulse, .at = {}, .host_errors = errors});
+      if (with_truth) kept.on_event(PulseTruth{pulse, {}, {Nanoseconds(0), Nanoseconds(1000)}});
       const HostTime host{Nanoseconds(now_ns)};
-      kept.on_poll({.camera = static_cast<std::uint32_t>(pulse) % kBlockCameras,
-                    .device = one.frame.sensor,
-                    .t0 = host - Nanoseconds(300'000),
-                    .t1 = host,
-                    .t0_steady = one.frame.arrival_steady - Nanoseconds(300'000),
-                    .t1_steady = one.frame.arrival_steady});
+      kept.on_event(DevicePoll{.camera = static_cast<std::uint32_t>(pulse) % kBlockCameras,
+                               .device = one.frame.sensor,
+                               .t0 = host - Nanoseconds(300'000),
+                               .t1 = host,
+                               .t0_steady = one.frame.arrival_steady - Nanoseconds(300'000),
+                               .t1_steady = one.frame.arrival_steady});
       if (pulse++ % 7 == 0) {
-        kept.on_adjustment({.host = static_cast<std::uint32_t>(pulse) % 2,
-                            .at = one.frame.arrival_steady,
-                            .before = host,
-                            .after = host + Nanoseconds(2000),
-                            .rate_ppb = 500});
+        kept.on_event(ClockAdjustment{.host = static_cast<std::uint32_t>(pulse) % 2,
+                                      .at = one.frame.arrival_steady,
+                                      .before = host,
+                                      .after = host + Nanoseconds(2000),
+                                      .rate_ppb = 500});
       }
     }
     kept.on_frame(one.frame, with_truth ? &one.truth : nullptr);
@@ -107,30 +106,16 @@ class InBlocks final : public RecordingSink {
   InBlocks(RecordingSink& sink, std::uint32_t seed) : sink_(sink), random_(seed) {}
 
   void on_start(const RigLayout& layout) override { sink_.on_start(layout); }
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    frames_.push_back(frame);
-    if (truth != nullptr) truths_.push_back(*truth);
-    if (random_() % 8 == 0) hand_on();
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    for_each_frame(frames, truths, [this](const FrameRecord& frame, const FrameTruth* truth) {
+      frames_.push_back(frame);
+      if (truth != nullptr) truths_.push_back(*truth);
+      if (random_() % 8 == 0) hand_on();
+    });
   }
-  void on_pulse(const PulseTruth& truth) override {
+  void on_event(const RecordingEvent& event) override {
     hand_on();
-    sink_.on_pulse(truth);
-  }
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    hand_on();
-    sink_.on_adjustment(adjustment);
-  }
-  void on_poll(const DevicePoll& poll) override {
-    hand_on();
-    sink_.on_poll(poll);
-  }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    hand_on();
-    sink_.on_exchange(host, exchange);
-  }
-  void on_outcome(const SyncOutcome& outcome) override {
-    hand_on();
-    sink_.on_outcome(outcome);
+    sink_.on_event(event);
   }
   void hand_on() {
     sink_.on_frames(frames_, truths_);

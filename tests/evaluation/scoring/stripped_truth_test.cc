@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
@@ -22,10 +24,12 @@ using ::testing::IsNan;
 class WithoutTruth final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
-  void on_frame(const FrameRecord& frame, const FrameTruth*) override {
-    sink().on_frame(frame, nullptr);
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth>) override {
+    sink().on_frames(frames, {});
   }
-  void on_pulse(const PulseTruth&) override {}
+  void on_event(const RecordingEvent& event) override {
+    if (!std::holds_alternative<PulseTruth>(event)) sink().on_event(event);
+  }
 };
 
 class StrippedSource final : public RecordingSource {

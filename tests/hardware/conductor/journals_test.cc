@@ -23,13 +23,13 @@ FrameEvent journal_frame(std::uint32_t camera, std::uint32_t counter, double arr
   return {record, std::nullopt};
 }
 
-std::string events_text(const std::vector<RecordingEvent>& events) {
+std::string events_text(const std::vector<KeptEvent>& events) {
   std::string text;
-  for (const RecordingEvent& event : events) text += to_line(event) + "\n";
+  for (const KeptEvent& event : events) text += to_line(event) + "\n";
   return text;
 }
 
-HostJournal host_journal(const std::vector<RecordingEvent>& events) {
+HostJournal host_journal(const std::vector<KeptEvent>& events) {
   HostJournal journal;
   journal.append(events_text(events));
   return journal;
@@ -41,11 +41,11 @@ std::vector<std::string> reported(const std::vector<HostJournal>& journals) {
   kept.on_start({});
   play_in_order(journals, kept);
   std::vector<std::string> names;
-  for (const RecordingEvent& event : kept.events()) {
-    if (const auto* frame = std::get_if<FrameEvent>(&event)) {
+  for (const KeptEvent& event : kept.events()) {
+    if (const auto* frame = event_as<FrameEvent>(event)) {
       names.push_back(std::to_string(frame->record.camera) + "/" +
                       std::to_string(frame->record.counter));
-    } else if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) {
+    } else if (const auto* adjustment = event_as<ClockAdjustment>(event)) {
       names.push_back("clock " + std::to_string(adjustment->host));
     }
   }

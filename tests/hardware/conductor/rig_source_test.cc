@@ -34,8 +34,8 @@ struct Outcome {
 
   std::size_t frames(std::uint32_t camera) const {
     std::size_t count = 0;
-    for (const RecordingEvent& event : recording.events()) {
-      const auto* frame = std::get_if<FrameEvent>(&event);
+    for (const KeptEvent& event : recording.events()) {
+      const auto* frame = event_as<FrameEvent>(event);
       count += frame != nullptr && frame->record.camera == camera ? 1 : 0;
     }
     return count;
@@ -77,8 +77,8 @@ TEST(RigSource, RecordsAllFramesOfAllHostsInOrder) {
     EXPECT_EQ(outcome.frames(camera), rig.frames_delivered(camera));
   }
   HostTime last = HostTime::min();  // and there are frames, as counted above
-  for (const RecordingEvent& event : outcome.recording.events()) {
-    const auto* frame = std::get_if<FrameEvent>(&event);
+  for (const KeptEvent& event : outcome.recording.events()) {
+    const auto* frame = event_as<FrameEvent>(event);
     if (frame == nullptr) continue;
     EXPECT_LE(last, frame->record.arrival);
     last = frame->record.arrival;

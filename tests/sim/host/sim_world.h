@@ -5,9 +5,11 @@
 #include <boost/asio/co_spawn.hpp>
 #include <exception>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "sim/host/host_group.h"
+#include "tests/recording/test_sink.h"
 #include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
@@ -20,19 +22,17 @@ inline scenarios::Scenario ideal_hosts(std::int64_t count = 2) {
   return scenario;
 }
 
-class KeptRecord : public RecordingSink {
+class KeptRecord : public TestSink {
  public:
-  void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord&, const FrameTruth*) override {}
-  void on_pulse(const PulseTruth&) override {}
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    adjustments.push_back(adjustment);
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) {
+      adjustments.push_back(*adjustment);
+    } else if (const auto* exchanged = std::get_if<ExchangeEvent>(&event)) {
+      exchanges.emplace_back(exchanged->host, exchanged->exchange);
+    } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
+      outcomes.push_back(*outcome);
+    }
   }
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    exchanges.emplace_back(host, exchange);
-  }
-  void on_outcome(const SyncOutcome& outcome) override { outcomes.push_back(outcome); }
 
   std::vector<ClockAdjustment> adjustments;
   std::vector<std::pair<std::uint32_t, Exchange>> exchanges;

@@ -149,7 +149,7 @@ TEST(CameraWorld, NeedNotBeKept) {
 
 std::vector<std::string> lines_of(const KeptRecording& recording) {
   std::vector<std::string> lines;
-  for (const RecordingEvent& event : recording.events()) lines.push_back(to_line(event));
+  for (const KeptEvent& event : recording.events()) lines.push_back(to_line(event));
   return lines;
 }
 
@@ -233,9 +233,9 @@ TEST(CameraWorld, ReportsComeInTheirOrder) {
   HostTime last{};
   std::size_t changes = 0;
   bool was_frame = false;
-  for (const RecordingEvent& event : recording.events()) {
-    const auto* frame = std::get_if<FrameEvent>(&event);
-    const auto* adjustment = std::get_if<ClockAdjustment>(&event);
+  for (const KeptEvent& event : recording.events()) {
+    const auto* frame = event_as<FrameEvent>(event);
+    const auto* adjustment = event_as<ClockAdjustment>(event);
     if (adjustment != nullptr && adjustment->host != 0) continue;
     if (frame == nullptr && adjustment == nullptr) continue;
     const HostTime at = frame != nullptr ? frame->truth->delivered : adjustment->before;

@@ -6,28 +6,25 @@
 
 #include <cstdint>
 #include <memory>
+#include <variant>
 #include <vector>
 
 #include "sim/rig/capture.h"
+#include "tests/recording/test_sink.h"
 
 namespace simbench::sim {
 
 // Keeps what a capture hands over, in the simplest form.
-class CapturedFrames final : public RecordingSink {
+class CapturedFrames final : public TestSink {
  public:
   struct Frame {
     FrameRecord record;
     FrameTruth truth;
   };
   void on_start(const RigLayout& layout) override { layout_ = layout; }
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    frames.push_back({frame, *truth});
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* pulse = std::get_if<PulseTruth>(&event)) pulses.push_back(pulse->pulse);
   }
-  void on_pulse(const PulseTruth& truth) override { pulses.push_back(truth.pulse); }
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome&) override {}
 
   std::vector<Frame> of(std::uint32_t camera, StreamKind kind = StreamKind::kDepth) const {
     std::vector<Frame> found;
@@ -42,6 +39,10 @@ class CapturedFrames final : public RecordingSink {
   std::vector<std::int64_t> pulses;
 
  private:
+  void frame_came(const FrameRecord& frame, const FrameTruth* truth) override {
+    frames.push_back({frame, *truth});
+  }
+
   RigLayout layout_;
 };
 

@@ -56,7 +56,7 @@ const scenarios::Pipeline& pipeline_of(const scenarios::Scenario& scenario,
 // 64-bit FNV-1a.
 std::uint64_t recording_hash(const KeptRecording& recording) {
   std::uint64_t hash = 0xCBF29CE484222325;
-  for (const RecordingEvent& event : recording.events()) {
+  for (const KeptEvent& event : recording.events()) {
     for (const char c : to_line(event) + "\n") {
       hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3;
     }

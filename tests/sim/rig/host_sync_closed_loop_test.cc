@@ -8,18 +8,20 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/registry.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/recording/test_sink.h"
 
 namespace simbench::sim {
 namespace {
 
 using Overrides = std::vector<scenarios::Override>;
 
-class HostErrors : public RecordingSink {
+class HostErrors : public TestSink {
  public:
   explicit HostErrors(const scenarios::Scenario& scenario)
       : scored_from_(
@@ -28,29 +30,29 @@ class HostErrors : public RecordingSink {
   int synchronised = 0;
   std::vector<std::string> failures;
 
-  void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord&, const FrameTruth*) override {}
-  void on_pulse(const PulseTruth& pulse) override {
-    if (pulse.at < TrueTime{} + scored_from_) return;
-    for (std::size_t host = 1; host < pulse.host_errors.size(); ++host) {
-      sum_us_ += std::abs(to_ms(pulse.host_errors[host])) * 1e3;
-      ++count_;
-    }
-  }
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome& outcome) override {
-    if (outcome.synchronised) {
-      ++synchronised;
-    } else {
-      failures.push_back(outcome.message);
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* pulse = std::get_if<PulseTruth>(&event)) {
+      add(*pulse);
+    } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
+      if (outcome->synchronised) {
+        ++synchronised;
+      } else {
+        failures.push_back(outcome->message);
+      }
     }
   }
 
   double mean_us() const { return sum_us_ / count_; }
 
  private:
+  void add(const PulseTruth& pulse) {
+    if (pulse.at < TrueTime{} + scored_from_) return;
+    for (std::size_t host = 1; host < pulse.host_errors.size(); ++host) {
+      sum_us_ += std::abs(to_ms(pulse.host_errors[host])) * 1e3;
+      ++count_;
+    }
+  }
+
   Nanoseconds scored_from_;
   double sum_us_ = 0;
   double count_ = 0;

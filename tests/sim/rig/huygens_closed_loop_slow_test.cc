@@ -7,34 +7,32 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/registry.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/recording/test_sink.h"
 
 namespace simbench::sim {
 namespace {
 
 // The mean error of each slave.
-class SlaveErrors : public RecordingSink {
+class SlaveErrors : public TestSink {
  public:
   int failures = 0;
 
-  void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord&, const FrameTruth*) override {}
-  void on_pulse(const PulseTruth& pulse) override {
-    sums_us_.resize(pulse.host_errors.size());
-    for (std::size_t host = 0; host < sums_us_.size(); ++host) {
-      sums_us_[host] += to_ms(pulse.host_errors[host]) * 1e3;
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* pulse = std::get_if<PulseTruth>(&event)) {
+      sums_us_.resize(pulse->host_errors.size());
+      for (std::size_t host = 0; host < sums_us_.size(); ++host) {
+        sums_us_[host] += to_ms(pulse->host_errors[host]) * 1e3;
+      }
+      ++pulses_;
+    } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
+      if (!outcome->synchronised) ++failures;
     }
-    ++pulses_;
-  }
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome& outcome) override {
-    if (!outcome.synchronised) ++failures;
   }
 
   std::vector<double> means_us() const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/registry.h"
@@ -12,29 +13,26 @@
 #include "recording/recording.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/recording/test_sink.h"
 
 namespace simbench::sim {
 namespace {
 
-class PulseErrors final : public RecordingSink {
+class PulseErrors final : public TestSink {
  public:
-  void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord&, const FrameTruth*) override {}
-  void on_pulse(const PulseTruth& truth) override {
-    for (std::size_t host = 1; host < truth.host_errors.size(); ++host) {
-      sum_us += std::abs(to_ms(truth.host_errors[host])) * 1e3;
-      ++count;
-    }
-  }
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    if (adjustment.after != adjustment.before) ++steps;
-    ++adjustments;
-  }
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override { ++exchanges; }
-  void on_outcome(const SyncOutcome& outcome) override {
-    EXPECT_TRUE(outcome.synchronised) << outcome.message;
-    ++outcomes[outcome.slave];
+  void on_event(const RecordingEvent& event) override {
+    std::visit(Overloaded{[this](const PulseTruth& pulse) { add(pulse); },
+                          [this](const ClockAdjustment& adjustment) {
+                            if (adjustment.after != adjustment.before) ++steps;
+                            ++adjustments;
+                          },
+                          [this](const ExchangeEvent&) { ++exchanges; },
+                          [this](const SyncOutcome& outcome) {
+                            EXPECT_TRUE(outcome.synchronised) << outcome.message;
+                            ++outcomes[outcome.slave];
+                          },
+                          [](const auto&) {}},
+               event);
   }
 
   double sum_us = 0;
@@ -43,6 +41,14 @@ class PulseErrors final : public RecordingSink {
   int adjustments = 0;
   int exchanges = 0;
   std::map<PeerId, int> outcomes;
+
+ private:
+  void add(const PulseTruth& pulse) {
+    for (std::size_t host = 1; host < pulse.host_errors.size(); ++host) {
+      sum_us += std::abs(to_ms(pulse.host_errors[host])) * 1e3;
+      ++count;
+    }
+  }
 };
 
 PulseErrors record_lan(const std::string& name, std::uint64_t seed) {

@@ -6,37 +6,34 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/registry.h"
 #include "recording/event.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
+#include "tests/recording/test_sink.h"
 #include "tests/sim/rig/ideal_scenario.h"
 
 namespace simbench::sim {
 namespace {
 
-class Collector final : public RecordingSink {
+class Collector final : public TestSink {
  public:
   void on_start(const RigLayout& layout) override {
     EXPECT_TRUE(frames.empty());
     EXPECT_EQ(adjustments, 0) << "the layout comes first";
     pulses_expected = layout.pulses;
   }
-  void on_frame(const FrameRecord& record, const FrameTruth* truth) override {
-    frames.push_back(record);
-    truths.push_back(*truth);
+  void on_event(const RecordingEvent& event) override {
+    std::visit(Overloaded{[this](const PulseTruth& truth) { add(truth); },
+                          [this](const ClockAdjustment&) { ++adjustments; },
+                          [this](const ExchangeEvent&) { ++exchanges; },
+                          [this](const SyncOutcome& outcome) { outcomes.push_back(outcome); },
+                          [](const auto&) {}},
+               event);
   }
-  void on_pulse(const PulseTruth& truth) override {
-    for (std::size_t host = 0; host < truth.host_errors.size(); ++host) {
-      host_errors_ms[host].push_back(to_ms(truth.host_errors[host]));
-    }
-  }
-  void on_adjustment(const ClockAdjustment&) override { ++adjustments; }
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override { ++exchanges; }
-  void on_outcome(const SyncOutcome& outcome) override { outcomes.push_back(outcome); }
 
   std::vector<FrameRecord> frames;
   std::vector<FrameTruth> truths;
@@ -45,6 +42,17 @@ class Collector final : public RecordingSink {
   int adjustments = 0;
   int exchanges = 0;
   std::int64_t pulses_expected = 0;
+
+ private:
+  void frame_came(const FrameRecord& record, const FrameTruth* truth) override {
+    frames.push_back(record);
+    truths.push_back(*truth);
+  }
+  void add(const PulseTruth& truth) {
+    for (std::size_t host = 0; host < truth.host_errors.size(); ++host) {
+      host_errors_ms[host].push_back(to_ms(truth.host_errors[host]));
+    }
+  }
 };
 
 RecordingCost record(const scenarios::Scenario& scenario, const std::string& host_sync,

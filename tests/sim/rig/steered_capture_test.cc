@@ -8,12 +8,14 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/registry.h"
 #include "recording/event.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/recording/test_sink.h"
 
 namespace simbench::sim {
 namespace {
@@ -21,19 +23,12 @@ namespace {
 constexpr double kFramePeriodMs = 1e3 / 30;
 
 // The true exposures of each camera, in order.
-class Exposures final : public RecordingSink {
+class Exposures final : public TestSink {
  public:
   void on_start(const RigLayout& layout) override { middles.resize(layout.cameras.size()); }
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    middles[frame.camera].push_back(to_ms(truth->mid_exposure().time_since_epoch()));
-    by_pulse[truth->pulse].push_back(middles[frame.camera].back());
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* report = std::get_if<AlignmentReport>(&event)) reports.push_back(*report);
   }
-  void on_pulse(const PulseTruth&) override {}
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll&) override {}
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome&) override {}
-  void on_alignment(const AlignmentReport& report) override { reports.push_back(report); }
 
   // Of a camera: the lengths of frames that differ from the usual one by more than 0.1 ms.
   std::vector<double> unusual_ms(std::size_t camera) const {
@@ -58,6 +53,12 @@ class Exposures final : public RecordingSink {
   std::vector<std::vector<double>> middles;
   std::map<std::int64_t, std::vector<double>> by_pulse;
   std::vector<AlignmentReport> reports;
+
+ private:
+  void frame_came(const FrameRecord& frame, const FrameTruth* truth) override {
+    middles[frame.camera].push_back(to_ms(truth->mid_exposure().time_since_epoch()));
+    by_pulse[truth->pulse].push_back(middles[frame.camera].back());
+  }
 };
 
 scenarios::Scenario short_rig() {

@@ -6,16 +6,18 @@
 #include <functional>
 #include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
 #include "recording/recording.h"
 #include "sim/rig/simulation.h"
+#include "tests/recording/test_sink.h"
 #include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 
-class KeptLists final : public RecordingSink {
+class KeptLists final : public TestSink {
  public:
   struct Frame {
     FrameRecord record;
@@ -29,23 +31,25 @@ class KeptLists final : public RecordingSink {
     LedSighting led;
     std::size_t frame;  // the newest frame then
   };
-  void on_start(const RigLayout&) override {}
-  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    frames.push_back({frame, *truth});
-  }
-  void on_pulse(const PulseTruth& truth) override { pulses.push_back({truth.pulse, truth.at}); }
-  void on_adjustment(const ClockAdjustment&) override {}
-  void on_poll(const DevicePoll& poll) override { polls.push_back(poll); }
-  void on_exchange(std::uint32_t, const Exchange&) override {}
-  void on_outcome(const SyncOutcome&) override {}
-  void on_led_sighting(const LedSighting& sighting) override {
-    sightings.push_back({sighting, frames.size() - 1});
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* pulse = std::get_if<PulseTruth>(&event)) {
+      pulses.push_back({pulse->pulse, pulse->at});
+    } else if (const auto* poll = std::get_if<DevicePoll>(&event)) {
+      polls.push_back(*poll);
+    } else if (const auto* sighting = std::get_if<LedSighting>(&event)) {
+      sightings.push_back({*sighting, frames.size() - 1});
+    }
   }
 
   std::vector<Frame> frames;
   std::vector<Pulse> pulses;
   std::vector<DevicePoll> polls;
   std::vector<Sighting> sightings;
+
+ private:
+  void frame_came(const FrameRecord& frame, const FrameTruth* truth) override {
+    frames.push_back({frame, *truth});
+  }
 };
 
 // Runs `program` on every host from `warm_up` before true zero to the end of the capture.
