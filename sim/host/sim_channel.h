@@ -50,7 +50,7 @@ class SimChannel final : public MessageChannel, private Endpoint {
                                                             SteadyTime deadline) override;
 
   // The number that a message to a group takes on the way to the peer (sim/host/sim_multicast.h).
-  Network::Recipient next_of_group() { return {.path = path_, .id = next_id_++}; }
+  SimNetwork::Recipient next_of_group() { return {.path = path_, .id = next_id_++}; }
 
  private:
   void on_arrival() override;

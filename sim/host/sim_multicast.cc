@@ -22,7 +22,7 @@ MessageKey SimMulticast::key(MessageId id) const {
 Task<MessageId> SimMulticast::send(std::uint32_t group, Bytes message) {
   const MessageId id = next_id_++;
   const HostWorld& world = host_.world();
-  std::vector<Network::Recipient> recipients;
+  std::vector<SimNetwork::Recipient> recipients;
   for (const PeerId member : world.network.groups().members(group)) {
     if (member == host_.id()) continue;
     recipients.push_back(host_.datagram_channel(member).next_of_group());

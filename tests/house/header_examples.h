@@ -270,7 +270,7 @@ extern WorldObserver& observer;
 extern Endpoint& endpoint;
 extern const RunLoad load;
 extern const Outages outages;
-extern Network network;
+extern SimNetwork network;
 extern const std::size_t host_count;
 extern const std::uint64_t link_and_direction, message_index;
 extern std::vector<int> messages;
