@@ -173,7 +173,7 @@ std::optional<std::string> ranking_text(const scenarios::Scenario& model,
 }
 
 int run_fit(const FitOptions& options) {
-  const reports::OutputFile output(options.output);
+  reports::OutputFile output(options.output);
   reports::FitReport report;
   try {
     const std::optional<FitTask> chosen = task_of(options);

@@ -1,7 +1,11 @@
 // `simbench run`: what it prints, what it keeps, and that it does so every time.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
 #include "tests/cli/program.h"
@@ -246,6 +250,25 @@ TEST_F(Run, CtrlCEndsItWithoutAHalfWrittenResult) {
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("interrupted after"));
   EXPECT_THAT(names_in(), IsEmpty());
+}
+
+TEST_F(Run, InterruptedAtAnyMomentItLeavesNothing) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> microseconds(0, 150'000);
+  for (int tried = 0; tried < 25; ++tried) {
+    const std::chrono::microseconds moment(microseconds(random));
+    const ProgramResult result =
+        run(small({"--output", "results"}), {.interrupt_at = moment, .interrupts = 1 + tried % 2});
+    SCOPED_TRACE(fmt::format("after {} us: {}", moment.count(), result.err));
+    if (names_in().empty()) {
+      EXPECT_EQ(result.status, 130);
+      continue;
+    }
+    EXPECT_THAT(names_in(), ElementsAre("results"));
+    EXPECT_THAT(names_in("results"),
+                ElementsAre("frames.csv", "hosts.csv", "manifest.json", "results.json"));
+    std::filesystem::remove_all(folder() / "results");
+  }
 }
 
 // Worlds that do not come to their next frame for long.
