@@ -5,7 +5,6 @@
 #include <utility>
 #include <variant>
 
-#include "evaluation/sweep/task_farm.h"
 #include "recording/forwarding_sink.h"
 #include "sim/rig/clock_simulation.h"
 #include "sim/rig/simulation.h"
@@ -115,10 +114,6 @@ std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scen
 
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario) {
   return std::make_unique<InterruptibleClocks>(sim::make_clock_simulation(scenario));
-}
-
-evaluation::TaskWorkerFactory simulated_sweep_workers() {
-  return evaluation::sweep_workers(simulated_world, simulated_clocks);
 }
 
 }  // namespace simbench::app

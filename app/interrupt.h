@@ -15,7 +15,6 @@
 #include <csignal>
 #include <memory>
 
-#include "evaluation/sweep/task_farm.h"
 #include "recording/clock_source.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
@@ -50,8 +49,6 @@ std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> 
 std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario);
 // The same of the hosts' clocks alone: an evaluation::ClockWorldFactory.
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario);
-// The workers of sweeps, in simulated worlds.
-evaluation::TaskWorkerFactory simulated_sweep_workers();
 
 }  // namespace simbench::app
 

@@ -10,7 +10,7 @@
 #include "app/fitted_ranking.h"
 #include "app/interrupt.h"
 #include "app/recorded_streams.h"
-#include "app/results.h"
+#include "app/results_text.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -240,6 +241,16 @@ TEST_F(Run, AResultThatCannotBePrintedIsAnError) {
   const ProgramResult result = run(small(), {.out_file = "/dev/full"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("standard output"));
+}
+
+TEST_F(Run, TheFirstTableOfAFreshCloneIsThatOfTheCommand) {
+  const std::filesystem::path first =
+      std::filesystem::path(SIMBENCH_PROGRAM).parent_path() / "simbench-first-table";
+  const std::string scenario = "18cam_6host_45fps";
+  const std::string command = fmt::format("cd {} && {} {} > first.txt 2> said.txt",
+                                          folder().string(), first.string(), scenario);
+  ASSERT_EQ(std::system(command.c_str()), 0) << content("said.txt");
+  EXPECT_EQ(content("first.txt"), run({"run", "--scenario", scenario}).out);
 }
 
 TEST_F(Run, CtrlCEndsItWithoutAHalfWrittenResult) {
