@@ -9,9 +9,9 @@
 namespace simbench::app {
 namespace {
 
-reports::Document document_of(const evaluation::Results& results,
-                              const scenarios::Scenario& scenario, bool leaderboard,
-                              const reports::AnswerText& answer, Detail detail) {
+reports::Document document_in_detail(const evaluation::Results& results,
+                                     const scenarios::Scenario& scenario, bool leaderboard,
+                                     const reports::AnswerText& answer, Detail detail) {
   if (detail == Detail::kAnswer) return reports::quiet_document(results, answer);
   if (detail == Detail::kScreen) {
     return reports::summary_document(
@@ -39,7 +39,7 @@ std::string results_text(const evaluation::Results& results, const scenarios::Sc
   if (format == "tidy") return reports::tidy_csv(results);
   // A file has all of it.
   const Detail shown = format == "table" ? detail : Detail::kAll;
-  reports::Document document = document_of(results, scenario, leaderboard, answer, shown);
+  reports::Document document = document_in_detail(results, scenario, leaderboard, answer, shown);
   document.blocks.insert(document.blocks.end(), more.begin(), more.end());
   return reports::drawn_as(format, document);
 }
