@@ -110,7 +110,8 @@ std::size_t processes_in(const std::filesystem::path& folder) {
   return count;
 }
 
-// Their end is the kernel's, a moment after their starter's: waits for it, however busy the machine.
+// Their end is the kernel's, a moment after their starter's: waits for it, however busy the
+// machine.
 bool all_programs_end(const std::filesystem::path& folder) {
   for (int tried = 0; tried < 3000 && processes_in(folder) > 0; ++tried) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
