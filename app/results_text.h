@@ -1,6 +1,7 @@
 // What a run prints.
 //
-//   const std::string text = results_text(results, scenario, "table", Detail::kScreen, answer);
+//   const reports::AnswerText answer = run_answer(results, scenario, nullptr);
+//   use(results_text(results, scenario, "table", Detail::kScreen, answer));
 #ifndef SIMBENCH_APP_RESULTS_TEXT_H_
 #define SIMBENCH_APP_RESULTS_TEXT_H_
 

@@ -5,8 +5,11 @@
 // destructors - the last resort of Ctrl-C (cli/interrupt_deadline.h) - calls dispose_of_all()
 // before.
 //
-//   Disposable folder([] { return make_temporary_folder(); });
-//   write(folder.path() / "rig.json");
+//   Disposable folder([] {
+//     std::filesystem::create_directory("half");
+//     return "half";
+//   });
+//   use(folder.path());
 #ifndef SIMBENCH_RECORDING_DISPOSABLE_H_
 #define SIMBENCH_RECORDING_DISPOSABLE_H_
 

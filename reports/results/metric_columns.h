@@ -1,8 +1,8 @@
 // What tables and figures show of the metrics (evaluation/scoring/metrics.h): in which tables each
 // stands and at which place, its headings, its legend. A metric without an entry is in no table.
 //
-//   for (const Metric* metric : table_metrics(&TablePlaces::truth)) {
-//     headings.push_back(column_of(*metric).heading);
+//   for (const evaluation::Metric* metric : table_metrics(&TablePlaces::truth)) {
+//     use(column_of(*metric).heading, metric->value(row));
 //   }
 #ifndef SIMBENCH_REPORTS_RESULTS_METRIC_COLUMNS_H_
 #define SIMBENCH_REPORTS_RESULTS_METRIC_COLUMNS_H_
