@@ -5,7 +5,6 @@
 #include <utility>
 #include <variant>
 
-#include "evaluation/sweep/task_farm.h"
 #include "recording/forwarding_sink.h"
 #include "sim/rig/clock_simulation.h"
 #include "sim/rig/simulation.h"
@@ -14,7 +13,15 @@ namespace simbench::app {
 namespace {
 
 std::atomic<bool> interrupt_flag{false};
+std::atomic<bool> insistence_flag{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
+
+void change_mask(int how, sigset_t* previous) {
+  sigset_t interrupt;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(how, &interrupt, previous);
+}
 
 void throw_if_interrupted() {
   if (interrupt_flag.load(std::memory_order_relaxed)) throw RecordingCancelled();
@@ -69,18 +76,29 @@ class InterruptibleClocks : public ClockSource {
 
 InterruptHandler::InterruptHandler() {
   interrupt_flag = false;
+  insistence_flag = false;
   struct sigaction action = {};
-  action.sa_handler = [](int) { interrupt_flag = true; };
-  // The second signal meets the default. An interrupted write is resumed, so that the result of a
-  // complete run is not lost.
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_handler = [](int) {
+    if (!interrupt_flag.exchange(true)) return;
+    // The third signal meets the default.
+    if (insistence_flag.exchange(true)) std::signal(SIGINT, SIG_DFL);
+  };
+  // An interrupted write is resumed, so that the result of a complete run is not lost.
+  action.sa_flags = static_cast<int>(SA_RESTART);
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, &previous_);
+  change_mask(SIG_UNBLOCK, &previous_mask_);
 }
 
-InterruptHandler::~InterruptHandler() { sigaction(SIGINT, &previous_, nullptr); }
+InterruptHandler::~InterruptHandler() {
+  // In this order: a signal that came too late waits until what is half-written is gone.
+  pthread_sigmask(SIG_SETMASK, &previous_mask_, nullptr);
+  sigaction(SIGINT, &previous_, nullptr);
+}
 
 bool InterruptHandler::raised() { return interrupt_flag; }
+
+bool InterruptHandler::insisted() { return insistence_flag; }
 
 void InterruptHandler::set(bool raised) { interrupt_flag = raised; }
 
@@ -96,10 +114,6 @@ std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scen
 
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario) {
   return std::make_unique<InterruptibleClocks>(sim::make_clock_simulation(scenario));
-}
-
-evaluation::TaskWorkerFactory simulated_sweep_workers() {
-  return evaluation::sweep_workers(simulated_world, simulated_clocks);
 }
 
 }  // namespace simbench::app

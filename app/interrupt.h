@@ -5,8 +5,9 @@
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
-// A second SIGINT ends the program at once. A program that has signal handlers of its own raises
-// the flag in their place.
+// A second SIGINT raises another flag, on which cli/interrupt_deadline.h ends the program at once;
+// a third does so itself. A program that has signal handlers of its own raises the flag in their
+// place.
 #ifndef SIMBENCH_APP_INTERRUPT_H_
 #define SIMBENCH_APP_INTERRUPT_H_
 
@@ -14,14 +15,14 @@
 #include <csignal>
 #include <memory>
 
-#include "evaluation/sweep/task_farm.h"
 #include "recording/clock_source.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::app {
 
-// One at a time: signal handlers belong to the process.
+// One at a time: signal handlers belong to the process. While it lives, its thread does not hold
+// SIGINT back (reports/text/output_file.h).
 class InterruptHandler {
  public:
   InterruptHandler();
@@ -29,6 +30,8 @@ class InterruptHandler {
   InterruptHandler(const InterruptHandler&) = delete;
   InterruptHandler& operator=(const InterruptHandler&) = delete;
   static bool raised();
+  // A second signal came: whoever sent it does not want to wait.
+  static bool insisted();
   // The flag itself, for work that polls one.
   static const std::atomic<bool>& flag();
   // In place of a signal, for a program with handlers of its own; set(false) before the next work.
@@ -36,6 +39,7 @@ class InterruptHandler {
 
  private:
   struct sigaction previous_ = {};
+  sigset_t previous_mask_ = {};
 };
 
 // The same source, but record() throws RecordingCancelled once the flag is raised.
@@ -45,8 +49,6 @@ std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> 
 std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario);
 // The same of the hosts' clocks alone: an evaluation::ClockWorldFactory.
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario);
-// The workers of sweeps, in simulated worlds.
-evaluation::TaskWorkerFactory simulated_sweep_workers();
 
 }  // namespace simbench::app
 

@@ -1,4 +1,4 @@
-// The results of a run or a sweep: the printed text and the files.
+// The files of a run or a sweep, and what sweeps and runs of clocks print.
 //
 //   RunArchive archive(arguments);              // the run begins
 //   archive.open("results/monday");             // throws before the work, not after it
@@ -7,7 +7,6 @@
 #ifndef SIMBENCH_APP_RESULTS_H_
 #define SIMBENCH_APP_RESULTS_H_
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,25 +16,12 @@
 #include "evaluation/sweep/sweep_plan.h"
 #include "reports/archive/archive.h"
 #include "reports/sweep/sweep_folder.h"
-#include "reports/text/answer_text.h"
-#include "reports/text/block.h"
 #include "scenarios/scenario.h"
 #include "scenarios/study.h"
 
 namespace simbench::app {
 
-// How much of the results a reader wants: the answer, a screen, or all of it.
-enum class Detail : std::uint8_t { kAnswer, kScreen, kAll };
-
-// The results as `simbench run` prints them. `format`: table, markdown, latex, csv, tidy or json;
-// the detail is that of a table, Markdown and LaTeX have all. `answer`: what these begin
-// with. `more`: blocks that follow.
-std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format, Detail detail,
-                         const reports::AnswerText& answer,
-                         const std::vector<reports::Block>& more = {});
-
-// The same of `simbench clocks`.
+// The results as `simbench clocks` prints them; `format` as in app/results_text.h.
 std::string clock_text(const evaluation::ClockResults& results, const scenarios::Scenario& scenario,
                        const std::string& format);
 

@@ -8,6 +8,7 @@
 
 #include "app/interrupt.h"
 #include "cli/messages.h"
+#include "recording/disposable.h"
 
 namespace simbench::cli {
 namespace {
@@ -17,7 +18,8 @@ constexpr std::chrono::milliseconds kGrace(400);
 
 }  // namespace
 
-InterruptDeadline::InterruptDeadline(std::function<void()> report) : report_(std::move(report)) {
+InterruptDeadline::InterruptDeadline(std::function<void()> report, Patience patience)
+    : report_(std::move(report)), patience_(patience) {
   try {
     watcher_ = std::jthread([this](const std::stop_token& over) { watch(over); });
   } catch (const std::system_error&) {
@@ -33,8 +35,13 @@ void InterruptDeadline::watch(const std::stop_token& over) {
   while (!app::InterruptHandler::raised()) {
     if (is_over_within(kLook)) return;
   }
-  if (is_over_within(kGrace)) return;
+  for (std::chrono::milliseconds waited(0);
+       patience_ == Patience::kUntilInsisted || waited < kGrace; waited += kLook) {
+    if (app::InterruptHandler::insisted()) break;
+    if (is_over_within(kLook)) return;
+  }
   report_();
+  dispose_of_all();
   ::_exit(kInterrupted);
 }
 

@@ -93,8 +93,8 @@ struct Watch {
   std::string unit = "run";                    // what it counts, in the singular
   std::uint64_t total = 0;                     // how many; 0: unknown until it begins
   std::string kept = "no result was written";  // what an interruption leaves
-  // Whether an interruption waits until the work has ended in order, however long that takes: a
-  // rig's cameras and trigger must be switched off.
+  // Whether an interruption waits until the work has ended in order, however long that takes, but
+  // for a second one: a rig's cameras and trigger must be switched off.
   bool waits_for_end = false;
 };
 
@@ -126,8 +126,10 @@ std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
     print_interruption(watch, finished, all);
   };
   try {
+    using Patience = InterruptDeadline::Patience;
     std::optional<InterruptDeadline> deadline;
-    if (!watch.waits_for_end) deadline.emplace(report_interruption);
+    deadline.emplace(report_interruption,
+                     watch.waits_for_end ? Patience::kUntilInsisted : Patience::kMoment);
     std::optional<Result> result = work([&](std::uint64_t done, std::uint64_t total) {
       const std::lock_guard lock(mutex);
       finished = done;

@@ -1,5 +1,5 @@
 # simbench_folder_library(NAME [RUNS_ONCE] [PARSES] [UNIT_FILES n] [PRECOMPILE header...]
-#                         [LINK target...])
+#                         [LINK target...] [FIRST path... FIRST_LINK target...])
 #
 # Makes the static library simbench_NAME from every .cc file below the calling folder, links it
 # publicly to the given targets, lets includes be written from the root of the project, and installs
@@ -10,11 +10,41 @@
 # PARSES: code that fuzzers watch.
 # UNIT_FILES: as in cmake/fast_build.cmake, where files take long; not under the sanitizers.
 # PRECOMPILE: headers that most files of the folder include (cmake/fast_build.cmake has the rest).
+# FIRST: beginnings of the paths, in the folder, of what a first table needs. These files are a library
+# of their own, simbench_NAME_first, with which simbench_NAME is linked: tools/run builds those before
+# the rest. FIRST_LINK: its targets.
 function(simbench_folder_library name)
-  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "UNIT_FILES" "PRECOMPILE;LINK" ${ARGN})
+  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "UNIT_FILES" "PRECOMPILE;LINK;FIRST;FIRST_LINK" ${ARGN})
+  set(flags "")
+  foreach(flag RUNS_ONCE PARSES)
+    if(arg_${flag})
+      list(APPEND flags ${flag})
+    endif()
+  endforeach()
+  if(arg_UNIT_FILES)
+    list(APPEND flags UNIT_FILES ${arg_UNIT_FILES})
+  endif()
+  list(APPEND flags PRECOMPILE ${arg_PRECOMPILE})
+
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/main\\.cc$")
-  add_library(simbench_${name} STATIC ${sources})
+  if(arg_FIRST)
+    list(JOIN arg_FIRST "|" beginnings)
+    set(first ${sources})
+    list(FILTER first INCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/(${beginnings})")
+    list(REMOVE_ITEM sources ${first})
+    simbench_static_library(${name}_first ${flags} LINK ${arg_FIRST_LINK} SOURCES ${first})
+    list(APPEND arg_LINK simbench_${name}_first)
+  endif()
+  simbench_static_library(${name} ${flags} LINK ${arg_LINK} SOURCES ${sources})
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
+          FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# The library simbench_NAME of these SOURCES; the rest is as above.
+function(simbench_static_library name)
+  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "UNIT_FILES" "PRECOMPILE;LINK;SOURCES" ${ARGN})
+  add_library(simbench_${name} STATIC ${arg_SOURCES})
   add_library(simbench::${name} ALIAS simbench_${name})
   set_target_properties(simbench_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(simbench_${name} PUBLIC
@@ -36,6 +66,4 @@ function(simbench_folder_library name)
   endif()
   simbench_fast_build(simbench_${name} ${unit_files} PRECOMPILE ${arg_PRECOMPILE} OPTIONS ${options})
   install(TARGETS simbench_${name} EXPORT simbench)
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
-          FILES_MATCHING PATTERN "*.h")
 endfunction()

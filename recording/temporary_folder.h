@@ -10,30 +10,29 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+
+#include "recording/disposable.h"
 
 namespace simbench {
 
 class TemporaryFolder {
  public:
   // Readable by its owner only. Throws std::runtime_error.
-  TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "simbench-XXXXXX") {
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw std::runtime_error(path_ + ": a temporary folder cannot be made here");
-    }
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  TemporaryFolder() : folder_(make) {}
 
-  const std::string& path() const { return path_; }
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
+  const std::string& path() const { return folder_.path().native(); }
+  std::string file(const std::string& name) const { return path() + "/" + name; }
 
  private:
-  std::string path_;
+  static std::filesystem::path make() {
+    std::string path = std::filesystem::temp_directory_path() / "simbench-XXXXXX";
+    if (mkdtemp(path.data()) == nullptr) {
+      throw std::runtime_error(path + ": a temporary folder cannot be made here");
+    }
+    return path;
+  }
+
+  Disposable folder_;
 };
 
 }  // namespace simbench

@@ -218,7 +218,7 @@ int draw_figure(const FigureCommand& command) {
   }
   const FigureEntry& entry = reports::figure_named(command.name);
   const FileKind kind = file_kind(command.output);
-  const reports::OutputFile file(command.output);
+  reports::OutputFile file(command.output);
   const std::optional<app::ArchiveFigures> made = make_figures(command, entry);
   if (!made) return kInterrupted;
   print_warnings(made->notes);

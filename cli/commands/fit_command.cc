@@ -10,7 +10,7 @@
 #include "app/fitted_ranking.h"
 #include "app/interrupt.h"
 #include "app/recorded_streams.h"
-#include "app/results.h"
+#include "app/results_text.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
@@ -173,7 +173,7 @@ std::optional<std::string> ranking_text(const scenarios::Scenario& model,
 }
 
 int run_fit(const FitOptions& options) {
-  const reports::OutputFile output(options.output);
+  reports::OutputFile output(options.output);
   reports::FitReport report;
   try {
     const std::optional<FitTask> chosen = task_of(options);

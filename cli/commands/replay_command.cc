@@ -12,6 +12,7 @@
 #include "app/recorded_streams.h"
 #include "app/recordings.h"
 #include "app/results.h"
+#include "app/results_text.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"

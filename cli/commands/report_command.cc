@@ -85,7 +85,7 @@ int make_report(ReportOptions options) {
   std::vector<reports::Archive> archives;
   for (const std::string& path : options.archives) archives.push_back(reports::read_archive(path));
   check_pipelines(options.detail, archives);
-  const reports::OutputFile file(options.output);
+  reports::OutputFile file(options.output);
 
   reports::ReportInput input{.archives = {}, .command = options.command};
   for (reports::Archive& archive : archives) {

@@ -7,6 +7,7 @@
 #include "app/answer.h"
 #include "app/interrupt.h"
 #include "app/results.h"
+#include "app/results_text.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/program_options.h"

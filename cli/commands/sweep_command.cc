@@ -8,6 +8,7 @@
 
 #include "app/interrupt.h"
 #include "app/results.h"
+#include "app/sweep_workers.h"
 #include "cli/command.h"
 #include "cli/command_line.h"
 #include "cli/commands/commands.h"

@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/interrupt.h"
+#include "app/sweep_workers.h"
 #include "cli/command_line.h"
 #include "cli/process.h"
 #include "evaluation/sweep/task_farm.h"

@@ -22,8 +22,8 @@ constexpr std::int32_t kCountsForNone = -1;
 
 // So that differences do not overflow.
 std::int64_t bounded_ns(TrueTime time) {
-  constexpr std::int64_t kFarthest = (std::int64_t{1} << 62) - 1;
-  return std::clamp(nanoseconds_of(time), -kFarthest, kFarthest);
+  constexpr std::int64_t kFarthestNs = (std::int64_t{1} << 62) - 1;
+  return std::clamp(nanoseconds_of(time), -kFarthestNs, kFarthestNs);
 }
 
 bool is_unlike(double value, double median) {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "algorithms/ports/assert.h"
-#include "evaluation/scoring/alignment_metrics.h"
-#include "evaluation/scoring/clock_metrics.h"
+#include "evaluation/scoring/metric_table.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 
@@ -14,12 +12,11 @@ namespace simbench::evaluation {
 namespace {
 
 std::vector<Metric>& registered(ResultKind kind) {
-  static std::vector<Metric> captures = [] {
-    std::vector<Metric> all(std::begin(kMetricTable), std::end(kMetricTable));
-    all.insert(all.end(), std::begin(kAlignmentMetricTable), std::end(kAlignmentMetricTable));
-    return all;
-  }();
-  static std::vector<Metric> clocks(std::begin(kClockMetricTable), std::end(kClockMetricTable));
+  const auto copy = [](std::span<const Metric> table) {
+    return std::vector<Metric>(table.begin(), table.end());
+  };
+  static std::vector<Metric> captures = copy(metric_table(ResultKind::kCaptures));
+  static std::vector<Metric> clocks = copy(metric_table(ResultKind::kClockRuns));
   return kind == ResultKind::kCaptures ? captures : clocks;
 }
 
@@ -111,17 +108,6 @@ std::vector<const Metric*> sweep_metrics(ResultKind kind) {
   }
   std::stable_partition(columns.begin(), columns.end(),
                         [](const Metric* each) { return !each->is_count(); });
-  return columns;
-}
-
-std::vector<const Metric*> table_metrics(int TablePlaces::*table, ResultKind kind) {
-  std::vector<const Metric*> columns;
-  for (const Metric& each : metrics(kind)) {
-    if (each.tables.*table > 0) columns.push_back(&each);
-  }
-  std::stable_sort(columns.begin(), columns.end(), [table](const Metric* a, const Metric* b) {
-    return a->tables.*table < b->tables.*table;
-  });
   return columns;
 }
 

@@ -1,11 +1,11 @@
-// The metrics: what each is, where a score keeps it, and where results show it.
+// The metrics: what each is, and where a score and the results' files keep it. What tables show of
+// them: reports/results/metric_columns.h.
 //
 // There is a list for each kind of result, captures of cameras and runs of the hosts' clocks alone,
 // and there are no others: rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive
-// reader, tables and figures go through metrics(). A new metric is a member of MetricValues and an
-// entry of kMetricTable (both here), kAlignmentMetricTable (alignment_metrics.h; captures whose
-// exposures are steered) or kClockMetricTable (clock_metrics.h), the line that computes it
-// (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md section 8.
+// reader, tables and figures go through metrics(). A new metric is a member of MetricValues (here),
+// an entry of the table in metric_table.cc, the line that computes it (pulse_scores.cc,
+// set_counter.cc, ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
 // 5-95 % band (a Series); a number over all seeds together; a count, summed over the seeds.
@@ -144,19 +144,6 @@ enum class CsvColumns : std::uint8_t {
   kValueAtEnd,  // likewise, behind the published values
 };
 
-// The metric's place, from 1, among the columns or panels of each report; 0: it is not shown.
-struct TablePlaces {
-  int summary = 0;         // the few of the first table
-  int paper = 0;           // the paper's metrics
-  int truth = 0;           // metrics that need true time
-  int time_errors = 0;     // the hosts' time errors
-  int alignment = 0;       // exposures that are steered
-  int sets = 0;            // gathered sets
-  int clocks = 0;          // runs of the hosts' clocks
-  int response = 0;        // the table of a sweep
-  int response_panel = 0;  // the figure of a sweep
-};
-
 // How much worse a metric may become: the larger of a share of the old value and a step.
 struct GateMargin {
   double relative = 0;
@@ -184,13 +171,6 @@ struct Metric {
   Better better = Better::kLower;
   Needs needs = Needs::kNothing;
   Place place;
-
-  // In tables: "\n" breaks a heading. Without a heading for the band, the median stands alone.
-  TablePlaces tables{};
-  const char* heading = "";
-  const char* band_heading = nullptr;
-  const char* legend = "";
-  bool legend_continues = false;  // on the line of the metric before it
 
   // In files. JSON: a member of the row's object `json_in` ("": of the row), named `json_name`
   // (null: id). Sweeps: the name of its column in sweep.csv (null: none).
@@ -251,9 +231,6 @@ std::vector<const Metric*> judged_metrics(ResultKind kind = ResultKind::kCapture
 std::vector<const Metric*> judged_metrics(ResultKind kind, std::span<const Row* const> rows);
 // The columns of a sweep, in their order: series and numbers, then counts.
 std::vector<const Metric*> sweep_metrics(ResultKind kind = ResultKind::kCaptures);
-// The columns of a table, in their order: table_metrics(&TablePlaces::truth).
-std::vector<const Metric*> table_metrics(int TablePlaces::*table,
-                                         ResultKind kind = ResultKind::kCaptures);
 
 // Adds a metric of captures at the end during its lifetime. For tests; not while others use
 // metrics(), whose addresses change.
@@ -266,324 +243,8 @@ class ScopedMetric {
 };
 
 inline constexpr const char* kInGathering = "gathering_score";
-inline constexpr const char* kInFrames = "frames";
 inline constexpr Judged kJudgedMs = {.smallest_step = 0.001,  // the last digit of the tables
                                      .margin = {.relative = 0.02, .absolute = 0.001}};
-inline constexpr Judged kJudgedShare = {.smallest_step = 0.001,
-                                        .margin = {.relative = 0.01, .absolute = 0.005}};
-
-// Time errors are metrics of both kinds; only clock runs, which are long, are judged by them.
-constexpr Metric time_error(const char* id, const char* title, SeriesPlace kept, int place,
-                            const char* heading, const char* legend) {
-  Metric metric;
-  metric.id = id;
-  metric.title = title;
-  metric.unit = "ms";
-  metric.needs = Needs::kTruth;
-  metric.place = kept;
-  metric.tables.time_errors = place;
-  metric.heading = heading;
-  metric.legend = legend;
-  metric.legend_continues = place > 1;
-  metric.sweep = id;
-  metric.is_new = true;
-  return metric;
-}
-inline constexpr Metric kMaxTe =
-    time_error("max_te_ms", "largest time error",
-               {&MetricValues<double>::max_te_ms, &MetricValues<Series>::max_te_ms}, 1, "max |TE|",
-               "TE: a host's clock minus the master's, over all slaves;");
-inline constexpr Metric kRmsTe = time_error(
-    "rms_te_ms", "RMS time error",
-    {&MetricValues<double>::rms_te_ms, &MetricValues<Series>::rms_te_ms}, 2, "RMS TE", "");
-inline constexpr Metric kConstantTe =
-    time_error("constant_te_ms", "constant time error",
-               {&MetricValues<double>::constant_te_ms, &MetricValues<Series>::constant_te_ms}, 3,
-               "constant\nTE", "constant: largest mean of a host;");
-inline constexpr Metric kDynamicTe =
-    time_error("dynamic_te_ms", "dynamic time error",
-               {&MetricValues<double>::dynamic_te_ms, &MetricValues<Series>::dynamic_te_ms}, 4,
-               "dynamic\nTE", "dynamic: largest range of a host.");
-// Of both kinds of runs; in tables of captures beside the hosts' time errors.
-constexpr Metric packets_metric() {
-  Metric metric;
-  metric.id = "packets_per_s";
-  metric.title = "packets per second";
-  metric.unit = "1/s";
-  metric.better = Better::kNeither;
-  metric.place =
-      SeriesPlace{&MetricValues<double>::packets_per_s, &MetricValues<Series>::packets_per_s};
-  metric.heading = "packets\nper s";
-  metric.sweep = "packets_per_s";
-  return metric;
-}
-constexpr Metric packets_of_captures() {
-  Metric metric = packets_metric();
-  metric.tables = {.time_errors = 5, .response = 7};
-  metric.legend =
-      "packets: messages that all hosts sent, the lost ones too, from the start of host "
-      "synchronisation to the end of the capture.";
-  metric.csv = CsvColumns::kValueAtEnd;
-  metric.is_new = true;
-  return metric;
-}
-inline constexpr Metric kMetricTable[] = {
-    {.id = "amd_ms",
-     .title = "AMD",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::amd_ms, &MetricValues<Series>::amd_ms},
-     .tables = {.summary = 1, .paper = 1, .response = 1, .response_panel = 1},
-     .heading = "AMD\nmedian",
-     .band_heading = "AMD\n5-95 %",
-     .legend = "AMD: mean range of the global stamps of a pulse over all cameras;",
-     .csv = CsvColumns::kBand,
-     .sweep = "amd_ms",
-     .judged = kJudgedMs},
-    {.id = "rmdv_ms",
-     .title = "RMDV",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::rmdv_ms, &MetricValues<Series>::rmdv_ms},
-     .tables = {.paper = 2},
-     .heading = "RMDV\nmedian",
-     .band_heading = "RMDV\n5-95 %",
-     .legend = "RMDV: mean RMS deviation of these from their median.",
-     .legend_continues = true,
-     .csv = CsvColumns::kBand,
-     .sweep = "rmdv_ms",
-     .judged = kJudgedMs},
-    {.id = "absolute_error_ms",
-     .title = "absolute error",
-     .unit = "ms",
-     .needs = Needs::kTruth,
-     .place = SeriesPlace{&MetricValues<double>::absolute_error_ms,
-                          &MetricValues<Series>::absolute_error_ms},
-     .tables = {.summary = 2, .truth = 1, .response = 2, .response_panel = 2},
-     .heading = "absolute error\nmedian",
-     .band_heading = "absolute error\n5-95 %",
-     .legend = "absolute error: mean |global stamp - true mid-exposure on the master's clock|;",
-     .csv = CsvColumns::kBand,
-     .sweep = "absolute_error_ms",
-     .judged = kJudgedMs},
-    {.id = "bias_ms",
-     .title = "bias",
-     .unit = "ms",
-     .better = Better::kNearestZero,
-     .needs = Needs::kTruth,
-     .place = SeriesPlace{&MetricValues<double>::bias_ms, &MetricValues<Series>::bias_ms},
-     .tables = {.truth = 2},
-     .heading = "bias",
-     .legend = "bias: the signed mean, which AMD cannot show.",
-     .legend_continues = true,
-     .csv = CsvColumns::kBand,
-     .sweep = "bias_ms"},
-    {.id = "host_error_ms",
-     .title = "host clock error",
-     .unit = "ms",
-     .needs = Needs::kTruth,
-     .place =
-         SeriesPlace{&MetricValues<double>::host_error_ms, &MetricValues<Series>::host_error_ms},
-     .tables = {.summary = 3, .truth = 3, .response = 3},
-     .heading = "host clock error\nmedian",
-     .band_heading = "host clock error\n5-95 %",
-     .legend = "host clock error: mean |slave - master|.",
-     .csv = CsvColumns::kBand,
-     .sweep = "host_error_ms"},
-    kMaxTe,
-    kRmsTe,
-    kConstantTe,
-    kDynamicTe,
-    packets_of_captures(),
-    {.id = "exposure_spread_ms",
-     .title = "exposure spread",
-     .unit = "ms",
-     .better = Better::kNeither,
-     .needs = Needs::kTruth,
-     .place = SeriesPlace{&MetricValues<double>::exposure_spread_ms,
-                          &MetricValues<Series>::exposure_spread_ms},
-     .tables = {.truth = 4},
-     .heading = "exposure\nspread",
-     .legend = "exposure spread: how far apart the exposures really were, a limit for AMD.",
-     .legend_continues = true,
-     .csv = CsvColumns::kBand,
-     .sweep = "exposure_spread_ms"},
-    {.id = "precision",
-     .title = "precision",
-     .unit = "share",
-     .better = Better::kHigher,
-     .needs = Needs::kVerifiedSets,
-     .place = &PooledValues::precision,
-     .tables = {.summary = 4, .truth = 5, .sets = 2, .response = 4},
-     .heading = "sets:\nprecision",
-     .legend = "precision: gathered sets that hold one pulse only;",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValue,
-     .sweep = "precision"},
-    {.id = "recall",
-     .title = "recall",
-     .unit = "share",
-     .better = Better::kHigher,
-     .needs = Needs::kVerifiedSets,
-     .place = &PooledValues::recall,
-     .tables = {.summary = 5, .truth = 6, .sets = 3, .response = 5, .response_panel = 3},
-     .heading = "sets:\nrecall",
-     .legend = "recall: complete pulses found whole;",
-     .legend_continues = true,
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValue,
-     .sweep = "recall"},
-    {.id = "margin_ms",
-     .title = "margin",
-     .unit = "ms",
-     .better = Better::kHigher,
-     .needs = Needs::kVerifiedSets,
-     .place = &PooledValues::margin_ms,
-     .tables = {.truth = 7, .response = 6, .response_panel = 4},
-     .heading = "margin",
-     .legend = "margin: limit less 99.9 % quantile of the range.",
-     .legend_continues = true,
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValue,
-     .sweep = "margin_ms"},
-    {.id = "seed_precision",
-     .title = "precision",
-     .unit = "share",
-     .better = Better::kHigher,
-     .needs = Needs::kVerifiedSets,
-     .place =
-         SeriesPlace{&MetricValues<double>::seed_precision, &MetricValues<Series>::seed_precision},
-     .json_in = kInGathering},
-    {.id = "seed_recall",
-     .title = "recall",
-     .unit = "share",
-     .better = Better::kHigher,
-     .needs = Needs::kVerifiedSets,
-     .place = SeriesPlace{&MetricValues<double>::seed_recall, &MetricValues<Series>::seed_recall},
-     .json_in = kInGathering,
-     .judged = kJudgedShare},
-    {.id = "sets",
-     .title = "complete sets",
-     .better = Better::kHigher,
-     .place = &SetCounts::emitted,
-     .tables = {.sets = 1},
-     .heading = "complete\nsets",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd,
-     .sweep = "sets"},
-    {.id = "pure_sets",
-     .title = "pure sets",
-     .better = Better::kHigher,
-     .needs = Needs::kVerifiedSets,
-     .place = &SetCounts::pure,
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd,
-     .sweep = "pure_sets"},
-    {.id = "complete_pulses",
-     .title = "complete pulses",
-     .better = Better::kNeither,
-     .needs = Needs::kVerifiedSets,
-     .place = &SetCounts::complete_pulses,
-     .json_in = kInGathering,
-     .sweep = "complete_pulses"},
-    {.id = "partial_sets",
-     .title = "partial sets",
-     .place = &SetCounts::partial,
-     .tables = {.sets = 5},
-     .heading = "partial\nsets",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd},
-    {.id = "index_errors",
-     .title = "index errors",
-     .needs = Needs::kVerifiedSets,
-     .place = &SetCounts::index_errors,
-     .tables = {.sets = 4},
-     .heading = "index\nerrors",
-     .legend = "index errors: members of complete sets of another pulse than most members.",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd},
-    {.id = "discarded_frames",
-     .title = "discarded frames",
-     .place = &SetCounts::discarded_frames,
-     .tables = {.sets = 6},
-     .heading = "frames\ndiscarded",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd},
-    {.id = "set_amd_ms",
-     .title = "AMD of sets",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::set_amd_ms, &MetricValues<Series>::set_amd_ms},
-     .tables = {.sets = 7},
-     .heading = "AMD of\nsets",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd,
-     .sweep = "set_amd_ms"},
-    {.id = "set_absolute_error_ms",
-     .title = "absolute error of sets",
-     .unit = "ms",
-     .needs = Needs::kTruth,
-     .place = SeriesPlace{&MetricValues<double>::set_absolute_error_ms,
-                          &MetricValues<Series>::set_absolute_error_ms},
-     .tables = {.sets = 8},
-     .heading = "abs. error\nof sets",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd,
-     .sweep = "set_absolute_error_ms"},
-    {.id = "emission_latency_ms",
-     .title = "emission latency",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::emission_latency_ms,
-                          &MetricValues<Series>::emission_latency_ms},
-     .tables = {.sets = 9},
-     .heading = "emitted after\nmean",
-     .legend = "emitted after: since the last member's arrival. AMD of sets is small where "
-               "gathering gave sets up: see recall.",
-     .legend_continues = true,
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd,
-     .sweep = "emission_latency_ms"},
-    {.id = "emission_latency_max_ms",
-     .title = "largest emission latency",
-     .unit = "ms",
-     .place = &PooledValues::emission_latency_max_ms,
-     .tables = {.sets = 10},
-     .heading = "emitted after\nlargest",
-     .json_in = kInGathering,
-     .csv = CsvColumns::kValueAtEnd},
-    {.id = "frames_expected",
-     .title = "frames expected",
-     .better = Better::kNeither,
-     .place = &FrameCounts::expected,
-     .json_in = kInFrames,
-     .json_name = "expected",
-     .csv = CsvColumns::kValue},
-    {.id = "frames_delivered",
-     .title = "frames delivered",
-     .better = Better::kHigher,
-     .place = &FrameCounts::delivered,
-     .json_in = kInFrames,
-     .json_name = "delivered",
-     .csv = CsvColumns::kValue},
-    {.id = "frames_dropped",
-     .title = "frames dropped",
-     .place = &FrameCounts::dropped,
-     .tables = {.truth = 8},
-     .heading = "frames\ndropped",
-     .json_in = kInFrames,
-     .json_name = "dropped",
-     .csv = CsvColumns::kValue,
-     .sweep = "frames_dropped"},
-    {.id = "evaluated_pulses",
-     .title = "pulses scored",
-     .better = Better::kNeither,
-     .place = &RunCounts::evaluated_pulses,
-     .tables = {.truth = 9},
-     .heading = "pulses\nscored",
-     .csv = CsvColumns::kValue},
-    {.id = "unsynchronised_hosts",
-     .title = "unsynchronised hosts",
-     .place = &RunCounts::unsynchronised_hosts,
-     .csv = CsvColumns::kValue,
-     .sweep = "unsynchronised_hosts"},
-};
 
 }  // namespace simbench::evaluation
 

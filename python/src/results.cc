@@ -10,6 +10,7 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
+#include "app/results_text.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/run_detail.h"

@@ -6,7 +6,6 @@
 #include <open3d/io/ImageIO.h>
 #include <open3d/io/TriangleMeshIO.h>
 #include <open3d/utility/Logging.h>
-#include <stdlib.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include <tuple>
 #include <utility>
 
+#include "recording/temporary_folder.h"
 #include "scenarios/input_file.h"
 #include "scenarios/loader.h"
 
@@ -32,11 +32,8 @@ constexpr std::size_t kLargestFile = std::size_t{1} << 30;
 // The bytes that `write` writes to a file of that extension. Open3D writes only to files.
 std::string written_bytes(const std::string& extension,
                           const std::function<bool(const std::string& path)>& write) {
-  std::string folder = (std::filesystem::temp_directory_path() / "simbench_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw std::runtime_error(folder + ": cannot make a temporary folder");
-  }
-  const std::string path = folder + "/file" + extension;
+  const TemporaryFolder folder;
+  const std::string path = folder.file("file" + extension);
   const bool written = write(path);
   std::string bytes;
   if (written) {
@@ -46,7 +43,6 @@ std::string written_bytes(const std::string& extension,
       bytes.clear();
     }
   }
-  std::filesystem::remove_all(folder);
   if (bytes.empty()) throw std::runtime_error(path + ": cannot be written; is the disk full?");
   return bytes;
 }

@@ -15,6 +15,7 @@
 #include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
+#include "reports/results/metric_columns.h"
 #include "reports/results/program_gap.h"
 #include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
@@ -29,7 +30,6 @@ using evaluation::kNan;
 using evaluation::Metric;
 using evaluation::ResultKind;
 using evaluation::Row;
-using evaluation::TablePlaces;
 
 std::vector<double> existing(const std::vector<double>& values) {
   std::vector<double> found;
@@ -52,9 +52,10 @@ double rms(const std::vector<double>& values) {
 }
 
 Field<Row> clock_field(const Metric& metric) {
-  Field<Row> field = {{metric.heading, Align::kRight, metric.legend},
+  const MetricColumn column = column_of(metric, ResultKind::kClockRuns);
+  Field<Row> field = {{column.heading, Align::kRight, column.legend},
                       [metric](const Row& row) { return metric_text(metric, metric.value(row)); }};
-  if (metric.band_heading != nullptr) {
+  if (column.band_heading != nullptr) {
     field.sparkline = [metric](const Row& row) { return seeds_sparkline(metric.series(row)); };
   }
   return field;
@@ -62,8 +63,7 @@ Field<Row> clock_field(const Metric& metric) {
 
 Table metrics_table(const ClockResults& results) {
   std::vector<Field<Row>> fields = {pipeline_field<Row>()};
-  for (const Metric* metric :
-       evaluation::table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
+  for (const Metric* metric : table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
     fields.push_back(clock_field(*metric));
   }
   return table_of(fields, results.results.rows);
@@ -95,13 +95,13 @@ std::vector<std::string> legend(const ClockResults& results) {
       fmt::format("Hosts alone, without cameras, read once a second; measured from {} to {} s. A "
                   "value is the median over the seeds.",
                   results.results.clock_period.from_s, results.results.clock_period.duration_s)};
-  for (const Metric* metric :
-       evaluation::table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
-    if (*metric->legend == '\0') continue;
-    if (metric->legend_continues) {
-      lines.back().append(" ").append(metric->legend);
+  for (const Metric* metric : table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
+    const MetricColumn column = column_of(*metric, ResultKind::kClockRuns);
+    if (*column.legend == '\0') continue;
+    if (column.legend_continues) {
+      lines.back().append(" ").append(column.legend);
     } else {
-      lines.emplace_back(metric->legend);
+      lines.emplace_back(column.legend);
     }
   }
   lines.emplace_back(

@@ -20,6 +20,7 @@
 #include <system_error>
 #include <vector>
 
+#include "recording/temporary_folder.h"
 #include "reports/text/file_content.h"
 #include "reports/text/html_text.h"
 #include "reports/text/output_file.h"
@@ -497,7 +498,7 @@ std::string own_titled(const std::string& svg, const Figure& figure) {
 }  // namespace
 
 void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
-  const OutputFile picture(output.string());
+  OutputFile picture(output.string());
   const OutputFile script(picture.path().string() + ".gnuplot");
   const OutputFile log(picture.path().string() + ".log");
   script.write(gnuplot_script(figure, format, picture.path().string()));
@@ -515,13 +516,10 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
 }
 
 std::string drawn_svg(const Figure& figure) {
-  const fs::path picture =
-      fs::temp_directory_path() / fmt::format("simbench_{}_{}.svg", figure.id, ::getpid());
+  const TemporaryFolder folder;
+  const std::string picture = folder.file(figure.id + ".svg");
   draw(figure, PlotFormat::kSvg, picture);
-  std::string svg = content_of(picture).value_or("");
-  std::error_code ignored;
-  fs::remove(picture, ignored);
-  return svg;
+  return content_of(picture).value_or("");
 }
 
 }  // namespace simbench::reports

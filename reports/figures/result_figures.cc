@@ -15,6 +15,7 @@
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
+#include "reports/results/metric_columns.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 
@@ -148,7 +149,7 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, const evaluation::Me
 Figure distribution(const std::vector<RowRef>& rows, const Results& results) {
   Figure figure = catalogued("distributions");
   for (const evaluation::Metric& metric : evaluation::metrics()) {
-    if (metric.band_heading == nullptr) continue;
+    if (column_of(metric).band_heading == nullptr) continue;
     FigurePanel made = quantile_panel(rows, metric);
     if (!empty(made)) figure.panels.push_back(std::move(made));
   }

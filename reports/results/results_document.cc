@@ -8,6 +8,7 @@
 
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/metric_columns.h"
 #include "reports/results/program_gap.h"
 #include "reports/results/published_figures_block.h"
 #include "reports/text/metric_text.h"
@@ -23,7 +24,6 @@ using evaluation::PublishedComparison;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::SeedScore;
-using evaluation::TablePlaces;
 using RowFields = std::vector<Field<Row>>;
 
 bool any_published(const Results& results) {
@@ -90,9 +90,8 @@ Table paper_table(const Results& results) {
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
-  append(fields, scored_seeds_field(pointers_to(results.rows),
-                                    evaluation::table_metrics(&TablePlaces::paper)));
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::paper)) {
+  append(fields, scored_seeds_field(pointers_to(results.rows), table_metrics(&TablePlaces::paper)));
+  for (const Metric* metric : table_metrics(&TablePlaces::paper)) {
     append(fields, metric_fields(*metric));
     if (published && metric->id == std::string_view("amd_ms")) {
       append(fields, published_amd_fields());
@@ -106,7 +105,7 @@ Table paper_table(const Results& results) {
 
 // A line per pipeline with the metrics that name the table.
 Table table_of_metrics(const Results& results, int TablePlaces::*table) {
-  const auto metrics = evaluation::table_metrics(table);
+  const auto metrics = table_metrics(table);
   RowFields fields = {pipeline_field<Row>()};
   append(fields, scored_seeds_field(pointers_to(results.rows), metrics));
   for (const Metric* metric : metrics) append(fields, metric_fields(*metric));
@@ -122,7 +121,7 @@ bool has_time_errors(const Results& results) {
 
 // Whether a row is of exposures that may be steered.
 bool has_alignment(const Results& results) {
-  const auto metrics = evaluation::table_metrics(&TablePlaces::alignment);
+  const auto metrics = table_metrics(&TablePlaces::alignment);
   return std::ranges::any_of(results.rows, [&metrics](const Row& row) {
     return std::ranges::any_of(metrics, [&row](const Metric* metric) {
       return evaluation::scored_seeds(row, *metric) > 0;
@@ -132,13 +131,14 @@ bool has_alignment(const Results& results) {
 
 // Adds the legends of a table's metrics.
 void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
-  for (const Metric* metric : evaluation::table_metrics(table)) {
-    const bool is_explained = table == &TablePlaces::sets && metric->tables.truth > 0;
-    if (is_explained || metric->legend[0] == '\0') continue;
-    if (metric->legend_continues && !lines.empty()) {
-      lines.back().append(" ").append(metric->legend);
+  for (const Metric* metric : table_metrics(table)) {
+    const MetricColumn column = column_of(*metric);
+    const bool is_explained = table == &TablePlaces::sets && column.tables.truth > 0;
+    if (is_explained || column.legend[0] == '\0') continue;
+    if (column.legend_continues && !lines.empty()) {
+      lines.back().append(" ").append(column.legend);
     } else {
-      lines.emplace_back(metric->legend);
+      lines.emplace_back(column.legend);
     }
   }
 }
@@ -158,7 +158,7 @@ std::vector<std::string> results_legend(const Results& results) {
           : "Every pipeline meets the same worlds, one per seed. A value is the median over the "
             "seeds, [a, b] their band from 5 to 95 %."};
   const auto lacks_seeds = [&results](int TablePlaces::*table) {
-    return !scored_seeds_field(pointers_to(results.rows), evaluation::table_metrics(table)).empty();
+    return !scored_seeds_field(pointers_to(results.rows), table_metrics(table)).empty();
   };
   if (lacks_seeds(&TablePlaces::paper) || lacks_seeds(&TablePlaces::truth) ||
       (gatherings_differ(results) && lacks_seeds(&TablePlaces::sets))) {
@@ -241,12 +241,13 @@ Block failures_block(const Results& results) {
 }
 
 std::vector<Field<Row>> metric_fields(const Metric& metric) {
+  const MetricColumn column = column_of(metric);
   // Copied, since the address of a metric may not last.
-  RowFields fields = {{{metric.heading, Align::kRight, metric.legend},
+  RowFields fields = {{{column.heading, Align::kRight, column.legend},
                        [metric](const Row& row) { return cell_text(metric, row); }}};
-  if (metric.band_heading != nullptr) {
+  if (column.band_heading != nullptr) {
     fields.push_back(
-        {{metric.band_heading, Align::kRight, metric.legend}, [metric](const Row& row) {
+        {{column.band_heading, Align::kRight, column.legend}, [metric](const Row& row) {
            const evaluation::Series& series = metric.series(row);
            return interval_text(metric, series.p05, series.p95);
          }});
@@ -290,8 +291,8 @@ std::vector<std::string> alignment_legend() {
 Table sets_table(const std::vector<const Row*>& rows) {
   RowFields fields = {pipeline_field<Row>(),
                       {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
-  append(fields, scored_seeds_field(rows, evaluation::table_metrics(&TablePlaces::sets)));
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::sets)) {
+  append(fields, scored_seeds_field(rows, table_metrics(&TablePlaces::sets)));
+  for (const Metric* metric : table_metrics(&TablePlaces::sets)) {
     append(fields, metric_fields(*metric));
   }
   std::vector<std::reference_wrapper<const Row>> subjects;

@@ -2,12 +2,12 @@
 //
 // A block each, with a row per pipeline: the paper's metrics beside the published values, and the
 // metrics that need true time; others about the hosts' time errors, the alignment of exposures that
-// are steered, and the gathered sets if the pipelines gather in different ways. The columns are the
-// entries of evaluation::metrics() that name the table. Rows of real rigs state their ground truth;
-// those without any are "unverified" (evaluation/scoring/unverified_scores.h). Then follow
-// failures, a legend for newcomers, the paper's claims with the fraction of seeds in which each
-// holds, and the cost of the run. About 145 columns wide. Source of the definitions: docs/design.md
-// section 8.
+// are steered, and the gathered sets if the pipelines gather in different ways. The columns are
+// those of reports/results/metric_columns.h that name the table. Rows of real rigs state their
+// ground truth; those without any are "unverified" (evaluation/scoring/unverified_scores.h). Then
+// follow failures, a legend for newcomers, the paper's claims with the fraction of seeds in which
+// each holds, and the cost of the run. About 145 columns wide. Source of the definitions:
+// docs/design.md section 8.
 //
 //   std::cout << plain(results_document(results, scenario.summary));
 #ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_

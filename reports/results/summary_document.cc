@@ -15,6 +15,7 @@
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/metric_columns.h"
 #include "reports/results/published_figures_block.h"
 #include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
@@ -29,7 +30,6 @@ using evaluation::Rank;
 using evaluation::RankedBy;
 using evaluation::Results;
 using evaluation::Row;
-using evaluation::TablePlaces;
 using RowFields = std::vector<Field<Row>>;
 
 // So that all of it stays on a screen of 50 lines.
@@ -37,9 +37,7 @@ constexpr std::size_t kMostSummaryRows = 20;
 constexpr std::size_t kMostRowsOfBoard = 7;
 constexpr std::size_t kMostNotes = 3;
 
-std::vector<const Metric*> summary_metrics() {
-  return evaluation::table_metrics(&TablePlaces::summary);
-}
+std::vector<const Metric*> summary_metrics() { return table_metrics(&TablePlaces::summary); }
 
 // The median; of AMD its band too.
 void add_metric(const Metric& metric, RowFields& fields) {
@@ -132,7 +130,7 @@ Block spread_block(const Results& results) {
   Block block;
   shorten(rows, kMostSummaryRows, block);
   RowFields fields = {pipeline_field<Row>(), standing_field(rows, ranked_by)};
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::alignment)) {
+  for (const Metric* metric : table_metrics(&TablePlaces::alignment)) {
     add_metric(*metric, fields);
   }
   block.table = table_of_rows(fields, rows);

@@ -1,7 +1,7 @@
 // Results for people in a hurry: what `simbench run` prints by default, on one screen.
 //
 // The answer (reports/results/results_answer.h), what the scenario is, and one table with a row per
-// pipeline and the metrics that name it (evaluation::TablePlaces::summary), each value in the unit
+// pipeline and the metrics that name it (TablePlaces::summary), each value in the unit
 // that fits it. A leaderboard has a short table for each board; a table of alignments has the
 // metrics of exposures, in order of their spread. Whatever failed is said; so is
 // where the rest is. Of many pipelines the first are shown, in order of the answer's metric for

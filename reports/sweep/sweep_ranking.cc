@@ -10,6 +10,7 @@
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/sweep/ranking.h"
 #include "reports/figures/figure_parts.h"
+#include "reports/results/metric_columns.h"
 #include "reports/sweep/sweep_parts.h"
 #include "reports/text/metric_text.h"
 
@@ -94,8 +95,9 @@ Block ranking_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows)
 
 Block packets_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   const Metric& metric = ranked_metric(plan);
+  const MetricColumn column = column_of(metric, plan.kind);
   Table table(
-      {{"pipeline", Align::kLeft}, {"packets\nper s"}, {metric.heading}, {metric.band_heading}}, 1);
+      {{"pipeline", Align::kLeft}, {"packets\nper s"}, {column.heading}, {column.band_heading}}, 1);
   for (std::size_t pipeline = 0; pipeline < plan.pipelines.size(); ++pipeline) {
     std::string last;
     for (const ResponseRow* row : by_packets(rows, pipeline)) {

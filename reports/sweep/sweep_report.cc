@@ -19,6 +19,7 @@
 #include "reports/figures/figure_parts.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
+#include "reports/results/metric_columns.h"
 #include "reports/sweep/sweep_parts.h"
 #include "reports/text/json_node.h"
 #include "reports/text/metric_text.h"
@@ -33,7 +34,6 @@ using evaluation::ResponseRow;
 using evaluation::SweepPlan;
 using evaluation::SweepRun;
 using evaluation::SweepScore;
-using evaluation::TablePlaces;
 
 // The columns that identify the run.
 std::string run_header(const SweepPlan& plan) {
@@ -95,7 +95,8 @@ std::string response_legend(const SweepPlan& plan, const std::vector<const Metri
   std::string text = fmt::format("Medians over the seeds, measured from {} to {} s.",
                                  plan.clock_period.from_s, plan.clock_period.duration_s);
   for (const Metric* metric : metrics) {
-    if (*metric->legend != '\0') text.append(" ").append(metric->legend);
+    const char* const legend = column_of(*metric, plan.kind).legend;
+    if (*legend != '\0') text.append(" ").append(legend);
   }
   if (text.back() == ';') text.back() = '.';
   return text;
@@ -252,8 +253,7 @@ std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>
 }
 
 Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const std::vector<const Metric*> metrics =
-      evaluation::table_metrics(&TablePlaces::response, plan.kind);
+  const std::vector<const Metric*> metrics = table_metrics(&TablePlaces::response, plan.kind);
   std::vector<Column> columns = point_columns(plan);
   const std::size_t keys = columns.size();
   const bool lack_seeds = std::any_of(rows.begin(), rows.end(), [&](const ResponseRow& row) {
@@ -261,8 +261,9 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
   });
   if (lack_seeds) columns.push_back({"seeds"});
   for (const Metric* metric : metrics) {
-    columns.push_back({metric->heading});
-    if (metric == metrics.front()) columns.push_back({metric->band_heading});
+    const MetricColumn column = column_of(*metric, plan.kind);
+    columns.push_back({column.heading});
+    if (metric == metrics.front()) columns.push_back({column.band_heading});
   }
   Table table(std::move(columns), keys);
   for (const ResponseRow& row : rows) {
@@ -352,7 +353,7 @@ Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& ro
     return figure;
   }
   const XAxis x = x_axis(plan);
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::response_panel, plan.kind)) {
+  for (const Metric* metric : table_metrics(&TablePlaces::response_panel, plan.kind)) {
     figure.panels.push_back(response_panel(plan, rows, x, *metric));
     const bool may_be_log = metric->better == evaluation::Better::kLower;
     if (may_be_log) use_log_scale_if_wide(figure.panels.back());

@@ -13,13 +13,23 @@
 #include <fstream>
 #include <system_error>
 
+#include "algorithms/ports/assert.h"
+
 namespace simbench::reports {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Of an earlier result while the next one gets its name.
+// The ending of an earlier result's name while the next one gets that.
 constexpr const char* kAside = ".old";
+
+thread_local int held_interrupts = 0;
+void change_interrupt_mask(int how) {
+  sigset_t interrupt;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(how, &interrupt, nullptr);
+}
 
 [[noreturn]] void fail(const std::string& named, const std::string& problem) {
   throw OutputError(fmt::format("{}: {}", named, problem));
@@ -143,24 +153,29 @@ void fail_output(const fs::path& folder, const std::string& problem) {
 
 std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }
 
-OutputFile::OutputFile(const std::string& path) : named_(path), path_(full_path(path)) {
-  clear_unfinished(path_);
-  temporary_ = unfinished_path(path_, std::to_string(getpid()));
-  errno = 0;
-  std::ofstream file(temporary_, std::ios::binary);
-  if (!file) {
-    fail(named_, fmt::format("cannot be written: {}; name another place", system_reason()));
-  }
+HeldInterrupt::HeldInterrupt() {
+  if (held_interrupts++ == 0) change_interrupt_mask(SIG_BLOCK);
+}
+HeldInterrupt::~HeldInterrupt() {
+  if (--held_interrupts == 0) change_interrupt_mask(SIG_UNBLOCK);
 }
 
-OutputFile::~OutputFile() {
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
-}
+OutputFile::OutputFile(const std::string& path)
+    : named_(path), path_(full_path(path)), temporary_([&] {
+        clear_unfinished(path_);
+        const fs::path temporary = unfinished_path(path_, std::to_string(getpid()));
+        errno = 0;
+        std::ofstream file(temporary, std::ios::binary);
+        if (!file) {
+          fail(named_, fmt::format("cannot be written: {}; name another place", system_reason()));
+        }
+        return temporary;
+      }) {}
 
 void OutputFile::write(std::string_view content) const {
   errno = 0;
-  std::ofstream file(temporary_, std::ios::binary);
+  std::ofstream file;
+  temporary_.change([&] { file.open(temporary_.path(), std::ios::binary); });
   file.write(content.data(), static_cast<std::streamsize>(content.size()));
   file.close();
   if (!file) {
@@ -168,14 +183,16 @@ void OutputFile::write(std::string_view content) const {
   }
 }
 
-void OutputFile::publish() const {
-  std::error_code error;
-  fs::rename(temporary_, path_, error);
-  if (error) fail(named_, fmt::format("cannot be written: {}", error.message()));
+void OutputFile::publish() {
+  temporary_.keep([&] {
+    std::error_code error;
+    fs::rename(temporary_.path(), path_, error);
+    if (error) fail(named_, fmt::format("cannot be written: {}", error.message()));
+  });
 }
 
 void write_file(const std::string& path, std::string_view content) {
-  const OutputFile file(path);
+  OutputFile file(path);
   file.write(content);
   file.publish();
 }
@@ -189,22 +206,20 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::vector<std::string
   if (!fs::is_directory(parent, error)) {
     fail_output(folder, fmt::format("there is no folder {}; make it first", parent.string()));
   }
-  temporary_ = unfinished_path(folder_, std::to_string(getpid()));
-  fs::remove_all(temporary_, error);  // of an earlier process with this one's number
-  fs::create_directory(temporary_, error);
-  if (error) fail_output(folder, fmt::format("cannot be written: {}", error.message()));
-}
-
-OutputFolder::~OutputFolder() {
-  open_.close();
-  std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  temporary_.emplace([&] {
+    const fs::path temporary = unfinished_path(folder_, std::to_string(getpid()));
+    fs::remove_all(temporary, error);  // of an earlier process with this one's number
+    fs::create_directory(temporary, error);
+    if (error) fail_output(folder, fmt::format("cannot be written: {}", error.message()));
+    return temporary;
+  });
 }
 
 std::ostream& OutputFolder::file(const std::string& name) {
   finish_file();
-  open_name_ = temporary_ / name;
-  open_.open(open_name_, std::ios::binary);
+  SIMBENCH_ASSERT(temporary_.has_value(), "a published folder gets no more files");
+  open_name_ = temporary_->path() / name;
+  temporary_->change([&] { open_.open(open_name_, std::ios::binary); });
   if (!open_) fail_output(folder_, fmt::format("cannot write {}: {}", name, system_reason()));
   return open_;
 }
@@ -222,20 +237,22 @@ void OutputFolder::publish() {
   finish_file();
   std::error_code error;
   fs::path aside;
-  if (fs::exists(folder_, error)) {
-    aside = temporary_;
-    aside += kAside;
-    fs::rename(folder_, aside, error);
-    if (error) fail_output(folder_, fmt::format("cannot be replaced: {}", error.message()));
-  }
-  fs::rename(temporary_, folder_, error);
-  if (error) {
-    std::error_code ignored;
-    if (!aside.empty()) fs::rename(aside, folder_, ignored);
-    fail_output(folder_, fmt::format("cannot be written: {}", error.message()));
-  }
-  temporary_.clear();
-  if (!aside.empty()) fs::remove_all(aside, error);
+  temporary_->keep([&] {
+    if (fs::exists(folder_, error)) {
+      aside = temporary_->path();
+      aside += kAside;
+      fs::rename(folder_, aside, error);
+      if (error) fail_output(folder_, fmt::format("cannot be replaced: {}", error.message()));
+    }
+    fs::rename(temporary_->path(), folder_, error);
+    if (error) {
+      std::error_code ignored;
+      if (!aside.empty()) fs::rename(aside, folder_, ignored);
+      fail_output(folder_, fmt::format("cannot be written: {}", error.message()));
+    }
+    if (!aside.empty()) fs::remove_all(aside, error);
+  });
+  temporary_.reset();
 }
 
 }  // namespace simbench::reports

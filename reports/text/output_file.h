@@ -2,9 +2,11 @@
 //
 // They are written under a temporary name beside their own; publish() renames. Without publish()
 // nothing is left, and an earlier result in that place stays; what a killed process has left is
-// removed by the next one that writes there. A link stays one: its target is replaced. An
-// OutputFolder replaces only an earlier result of simbench: it refuses a folder with anything else
-// in it.
+// removed by the next one that writes there. Ctrl-C leaves nothing: while one of them is not
+// published, SIGINT waits on its thread, unless the program handles it (app/interrupt.h), and a
+// program that ends in haste disposes of it (recording/disposable.h). A link stays one: its target
+// is replaced. An OutputFolder replaces only an earlier result of simbench: it refuses a folder
+// with anything else in it.
 //
 //   OutputFile file("fig8.csv");              // before the work: refuses what cannot be written
 //   file.write(text);
@@ -20,11 +22,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "recording/disposable.h"
 
 namespace simbench::reports {
 
@@ -33,23 +38,31 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// SIGINT waits for the end of all of these of a thread.
+class HeldInterrupt {
+ public:
+  HeldInterrupt();
+  ~HeldInterrupt();
+  HeldInterrupt(const HeldInterrupt&) = delete;
+  HeldInterrupt& operator=(const HeldInterrupt&) = delete;
+};
+
 class OutputFile {
  public:
   // Checks that `path` may be written and makes the temporary file.
   explicit OutputFile(const std::string& path);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
 
-  // The temporary name, for other programs that write the file.
-  const std::filesystem::path& path() const { return temporary_; }
+  // The temporary name, for other programs that write the file. Until publish().
+  const std::filesystem::path& path() const { return temporary_.path(); }
   void write(std::string_view content) const;
-  void publish() const;
+  // Once, at the end.
+  void publish();
 
  private:
-  std::string named_;  // as the user stated it
+  HeldInterrupt held_;  // first: lives longest
+  std::string named_;   // as the user stated it
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  Disposable temporary_;
 };
 
 // Makes, writes and publishes a file.
@@ -69,9 +82,6 @@ class OutputFolder {
   // an earlier result there may hold besides those of an archive.
   explicit OutputFolder(const std::filesystem::path& folder,
                         const std::vector<std::string>& more_own_files = {});
-  ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
 
   // Finishes the preceding file and starts the next: at most one is open.
   std::ostream& file(const std::string& name);
@@ -81,8 +91,9 @@ class OutputFolder {
  private:
   void finish_file();
 
+  HeldInterrupt held_;  // first: lives longest
   std::filesystem::path folder_;
-  std::filesystem::path temporary_;
+  std::optional<Disposable> temporary_;  // until publish()
   std::filesystem::path open_name_;
   std::ofstream open_;
 };

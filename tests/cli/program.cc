@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <thread>
 
 namespace simbench {
@@ -45,6 +47,26 @@ void redirect(const fs::path& path, int descriptor) {
   _exit(127);
 }
 
+// The line of /proc/PID/status with this name; empty without one.
+std::string status_line(pid_t process, const std::string& name) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(name + ":\t")) return line.substr(name.size() + 2);
+  }
+  return "";
+}
+
+// Returns when the program has a handler of SIGINT, or has ended.
+void wait_for_handler(pid_t process) {
+  constexpr std::uint64_t kInterrupt = std::uint64_t{1} << (SIGINT - 1);
+  for (;;) {
+    const std::string caught = status_line(process, "SigCgt");
+    if (caught.empty() || status_line(process, "State").starts_with("Z")) return;
+    if ((std::stoull(caught, nullptr, 16) & kInterrupt) != 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 }  // namespace
 
 bool has_reconstruction() {
@@ -61,8 +83,13 @@ ProgramResult ProgramTest::run(const std::vector<std::string>& arguments,
   const pid_t process = fork();
   if (process == 0) become_program(folder(), command, out, err, options);
   if (options.interrupt_after) {
+    wait_for_handler(process);
     std::this_thread::sleep_for(*options.interrupt_after);
     kill(process, SIGINT);
+  }
+  if (options.interrupt_at) {
+    std::this_thread::sleep_for(*options.interrupt_at);
+    for (int sent = 0; sent < options.interrupts; ++sent) kill(process, SIGINT);
   }
   int wait_status = 0;
   waitpid(process, &wait_status, 0);

@@ -22,8 +22,12 @@ struct ProgramResult {
 };
 
 struct ProgramOptions {
-  // SIGINT after this time; the second one is up to the test.
+  // SIGINT so long after the program has begun to handle it, that is, in the midst of its work: how
+  // long it takes to get there depends on the machine. The second one is up to the test.
   std::optional<std::chrono::milliseconds> interrupt_after = std::nullopt;
+  // SIGINT so long after the start, wherever the program is then, so many times.
+  std::optional<std::chrono::microseconds> interrupt_at = std::nullopt;
+  int interrupts = 1;
   // Writes beyond this size fail, as on a full disk.
   std::optional<std::size_t> largest_file = std::nullopt;
   // "NAME=value" each, beside what the test's own environment has (COLUMNS is taken from that).

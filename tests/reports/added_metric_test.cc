@@ -1,5 +1,6 @@
-// A metric is its computation and one entry in evaluation/scoring/metrics.h: one that is added
-// here, of a quantity that scores have and results do not show, is found in every output.
+// A metric is its computation, an entry in evaluation/scoring/metric_table.cc and, for tables, one
+// in reports/results/metric_columns.cc: one that is added here, of a quantity that scores have and
+// results do not show, is found in every output.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "reports/comparison/gate.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
+#include "reports/results/metric_columns.h"
 #include "reports/results/results_document.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/block.h"
@@ -35,12 +37,14 @@ constexpr evaluation::Metric kTrend = {
     .unit = "ms",
     .place =
         evaluation::SeriesPlace{&MetricValues<double>::trend_ms, &MetricValues<Series>::trend_ms},
-    .tables = {.paper = 3, .truth = 10, .sets = 11},
-    .heading = "trend of\nAMD ms",
-    .legend = "trend: how much AMD grows over the recording.",
     .csv = evaluation::CsvColumns::kBand,
     .sweep = "trend_ms",
     .judged = evaluation::kJudgedMs};
+
+constexpr MetricColumn kTrendColumn = {.id = "trend_ms",
+                                       .tables = {.paper = 3, .truth = 10, .sets = 11},
+                                       .heading = "trend of\nAMD ms",
+                                       .legend = "trend: how much AMD grows over the recording."};
 
 // Two pipelines over 32 seeds: the trend is 1, 2, ... ms, of the second twice as much.
 evaluation::Row added_row(const std::string& name, double factor) {
@@ -64,6 +68,7 @@ Archive added_archive() {
 class AddedMetric : public testing::Test {
  private:
   evaluation::ScopedMetric trend_{kTrend};
+  ScopedMetricColumn column_{kTrendColumn};
 };
 
 TEST_F(AddedMetric, ItsRowHasMedianAndBand) {

@@ -191,7 +191,7 @@ TEST_F(ReplayCommand, ALongRecordingShowsProgressAndHearsCtrlC) {
     text += fmt::format("Depth,0,{},{}.25,{}.5\n", i, i * 33, i * 33);
   const std::string name = file("long.csv", text);
   const ProgramResult stopped = run({"replay", name, "--output", "results"},
-                                    {.interrupt_after = std::chrono::milliseconds(400)});
+                                    {.interrupt_after = std::chrono::milliseconds(1)});
   EXPECT_EQ(stopped.status, 130);
   EXPECT_THAT(stopped.err, HasSubstr("interrupted after "));
   EXPECT_THAT(names_in(), ElementsAre("long.csv"));

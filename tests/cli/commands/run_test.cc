@@ -1,7 +1,12 @@
 // `simbench run`: what it prints, what it keeps, and that it does so every time.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
 #include "tests/cli/program.h"
@@ -238,6 +243,16 @@ TEST_F(Run, AResultThatCannotBePrintedIsAnError) {
   EXPECT_THAT(result.err, HasSubstr("standard output"));
 }
 
+TEST_F(Run, TheFirstTableOfAFreshCloneIsThatOfTheCommand) {
+  const std::filesystem::path first =
+      std::filesystem::path(SIMBENCH_PROGRAM).parent_path() / "simbench-first-table";
+  const std::string scenario = "18cam_6host_45fps";
+  const std::string command = fmt::format("cd {} && {} {} > first.txt 2> said.txt",
+                                          folder().string(), first.string(), scenario);
+  ASSERT_EQ(std::system(command.c_str()), 0) << content("said.txt");
+  EXPECT_EQ(content("first.txt"), run({"run", "--scenario", scenario}).out);
+}
+
 TEST_F(Run, CtrlCEndsItWithoutAHalfWrittenResult) {
   const ProgramResult result =
       run({"--scenario", "18cam_6host_45fps", "--seeds", "100000", "--output", "results"},
@@ -246,6 +261,24 @@ TEST_F(Run, CtrlCEndsItWithoutAHalfWrittenResult) {
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("interrupted after"));
   EXPECT_THAT(names_in(), IsEmpty());
+}
+
+TEST_F(Run, InterruptedAtAnyMomentItLeavesNothing) {
+  std::mt19937 random(11);
+  for (int tried = 0; tried < 25; ++tried) {
+    const std::chrono::microseconds moment(random() % 150'000);
+    const ProgramResult result =
+        run(small({"--output", "results"}), {.interrupt_at = moment, .interrupts = 1 + tried % 2});
+    SCOPED_TRACE(fmt::format("after {} us: {}", moment.count(), result.err));
+    if (names_in().empty()) {
+      EXPECT_EQ(result.status, 130);
+      continue;
+    }
+    EXPECT_THAT(names_in(), ElementsAre("results"));
+    EXPECT_THAT(names_in("results"),
+                ElementsAre("frames.csv", "hosts.csv", "manifest.json", "results.json"));
+    std::filesystem::remove_all(folder() / "results");
+  }
 }
 
 // Worlds that do not come to their next frame for long.

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "evaluation/scoring/metrics.h"
+#include "reports/results/metric_columns.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 #include "tests/reports/sample_results.h"
@@ -159,11 +160,11 @@ Cost: 1.23 M events in 0.25 s (0.50 s of CPU): 4.94 M events/s, 256 simulated se
 TEST(ResultsDocument, AMetricThatNamesItsTableStandsInIt) {
   evaluation::Metric mine = evaluation::metric("bias_ms");
   mine.id = "mine_ms";
-  mine.tables = {.truth = 10};
-  mine.heading = "mine";
-  mine.legend = "mine: of this test.";
-  mine.legend_continues = false;
   const evaluation::ScopedMetric scoped(mine);
+  const ScopedMetricColumn column({.id = "mine_ms",
+                                   .tables = {.truth = 10},
+                                   .heading = "mine",
+                                   .legend = "mine: of this test."});
   const Document document = results_document(sample_results(), "");
   EXPECT_THAT(plain(document), HasSubstr("  -29.0 ms\n"));  // in the last column
   EXPECT_THAT(plain(document), HasSubstr("\n  mine: of this test.\n"));

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "tests/scratch_folder.h"
@@ -19,10 +20,11 @@ class OutputFileTest : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }
   std::string content(const std::string& name) const { return folder_.content(name); }
-  std::size_t files() const { return folder_.names().size(); }
+  std::vector<std::string> names() const { return folder_.names(); }
+  std::size_t files() const { return names().size(); }
   static std::string problem(const std::string& path) {
     try {
-      const OutputFile file(path);
+      OutputFile file(path);
     } catch (const OutputError& error) {
       return error.what();
     }
@@ -32,9 +34,10 @@ class OutputFileTest : public testing::Test {
  private:
   const ScratchFolder folder_;
 };
+using OutputFileDeathTest = OutputFileTest;
 
 TEST_F(OutputFileTest, AppearsWhole) {
-  const OutputFile file(path("a.html"));
+  OutputFile file(path("a.html"));
   file.write("<p>");
   EXPECT_FALSE(fs::exists(path("a.html")));
   file.publish();
@@ -43,14 +46,14 @@ TEST_F(OutputFileTest, AppearsWhole) {
 }
 
 TEST_F(OutputFileTest, NothingIsLeftOfWhatWasNotWritten) {
-  { const OutputFile file(path("a.html")); }
+  { OutputFile file(path("a.html")); }
   EXPECT_EQ(files(), 0U);
 }
 
 TEST_F(OutputFileTest, AnEarlierFileStaysUntilThenAndIsReplaced) {
   std::ofstream(path("a.html")) << "earlier";
   {
-    const OutputFile file(path("a.html"));
+    OutputFile file(path("a.html"));
     EXPECT_EQ(content("a.html"), "earlier");
   }
   EXPECT_EQ(content("a.html"), "earlier");
@@ -90,10 +93,25 @@ TEST_F(OutputFileTest, WhatAKilledProcessLeftIsCleared) {
   put(unfinished(dead), "half");
   put(unfinished(getppid()), "of a process that works");
   put(path(".a.html.txt.unfinished"), "no process");
-  const OutputFile file(path("a.html"));
+  OutputFile file(path("a.html"));
   EXPECT_FALSE(fs::exists(unfinished(dead)));
   EXPECT_TRUE(fs::exists(unfinished(getppid())));
   EXPECT_TRUE(fs::exists(path(".a.html.txt.unfinished")));
+}
+
+// SIGINT in the midst of writing, in a program without a handler.
+TEST_F(OutputFileDeathTest, AnInterruptWaitsUntilNothingIsHalfWritten) {
+  const auto interrupted = [&] {
+    OutputFile file(path("a.html"));
+    {
+      const OutputFile other(path("b.html"));
+      raise(SIGINT);
+    }
+    file.write("whole");
+    file.publish();
+  };
+  EXPECT_EXIT(interrupted(), testing::KilledBySignal(SIGINT), "");
+  EXPECT_THAT(names(), testing::ElementsAre("a.html"));
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+// What a run prints.
+//
+//   const reports::AnswerText answer = run_answer(results, scenario, nullptr);
+//   use(results_text(results, scenario, "table", Detail::kScreen, answer));
+#ifndef SIMBENCH_APP_RESULTS_TEXT_H_
+#define SIMBENCH_APP_RESULTS_TEXT_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evaluation/scoring/results.h"
+#include "reports/text/answer_text.h"
+#include "reports/text/block.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::app {
+
+// How much of the results a reader wants: the answer, a screen, or all of it.
+enum class Detail : std::uint8_t { kAnswer, kScreen, kAll };
+
+// The results as `simbench run` prints them. `format`: table, markdown, latex, csv, tidy or json;
+// the detail is that of a table, Markdown and LaTeX have all. `answer`: what these begin
+// with. `more`: blocks that follow.
+std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
+                         const std::string& format, Detail detail,
+                         const reports::AnswerText& answer,
+                         const std::vector<reports::Block>& more = {});
+
+}  // namespace simbench::app
+
+#endif  // SIMBENCH_APP_RESULTS_TEXT_H_

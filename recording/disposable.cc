@@ -1,0 +1,63 @@
+#include "recording/disposable.h"
+
+#include <mutex>
+#include <set>
+#include <system_error>
+
+namespace simbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DisposablePaths {
+  std::mutex mutex;
+  std::set<fs::path> paths;
+};
+
+// Never destroyed: threads may use it until the process ends.
+DisposablePaths& disposable_paths() {
+  static auto* const all = new DisposablePaths;
+  return *all;
+}
+
+}  // namespace
+
+Disposable::Disposable(const std::function<fs::path()>& make) {
+  DisposablePaths& all = disposable_paths();
+  const std::lock_guard lock(all.mutex);
+  path_ = make();
+  all.paths.insert(path_);
+}
+
+Disposable::~Disposable() {
+  if (path_.empty()) return;
+  DisposablePaths& all = disposable_paths();
+  const std::lock_guard lock(all.mutex);
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  all.paths.erase(path_);
+}
+
+void Disposable::change(const std::function<void()>& change) const {
+  const std::lock_guard lock(disposable_paths().mutex);
+  change();
+}
+
+void Disposable::keep(const std::function<void()>& publish) {
+  DisposablePaths& all = disposable_paths();
+  const std::lock_guard lock(all.mutex);
+  publish();
+  all.paths.erase(path_);
+  path_.clear();
+}
+
+void dispose_of_all() {
+  DisposablePaths& all = disposable_paths();
+  all.mutex.lock();  // for good
+  for (const fs::path& path : all.paths) {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+}
+
+}  // namespace simbench
