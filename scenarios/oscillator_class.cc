@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/builtin_files.h"
+#include "scenarios/schema_walk.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -71,7 +72,8 @@ const OscillatorClass* find_oscillator_class(std::string_view class_name) {
 }
 
 void apply_oscillator_classes(json& scenario, Places& places) {
-  for (const std::string oscillator : {"/hosts/clock/oscillator", "/cameras/oscillator"}) {
+  static const std::vector<std::string> oscillators = pointers_that_say("x-type", "Oscillator");
+  for (const std::string& oscillator : oscillators) {
     const std::string class_pointer = oscillator + "/class";
     const json::json_pointer at(class_pointer);
     if (!scenario.contains(at) || !scenario[at].is_string()) continue;

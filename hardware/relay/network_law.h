@@ -12,9 +12,9 @@
 // depend on other messages. They are not the simulator's draws: the two are compared by their
 // distributions.
 //
-// check_relay_can() refuses what a relay cannot imitate: bursts, bandwidth, Nagle's algorithm,
-// capture traffic, switches that know PTP or stand in a line, wireless cells, latencies per
-// session, stacks of hosts (those are the machine's own).
+// check_relay_can() refuses what a relay cannot imitate, as scenarios/schema.json says of each
+// member ("x-relay"): bursts, bandwidth, Nagle's algorithm, capture traffic, switches that know PTP
+// or stand in a line, wireless cells, latencies per session, stacks of hosts (the machine has one).
 //
 //   NetworkLaw law(scenario.network, seed, 0, 3);
 //   for (MonotonicTime at : law.datagram(received)) send_at(at);

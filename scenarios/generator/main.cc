@@ -165,7 +165,8 @@ class Writer {
     for (const ordered_json& word : node["enum"]) {
       const std::string value = "k" + camel_case(word.get<std::string>());
       values += (values.empty() ? "" : ", ") + value;
-      words += "      {" + type + "::" + value + ", " + word.dump() + "},\n";
+      words.append("      {").append(type).append("::").append(value).append(", ");
+      words.append(word.dump()).append("},\n");
     }
     enums_ += comment(node.value("description", ""), "") + "enum class " + type +
               " : std::uint8_t { " + values + " };\n" + "constexpr auto words_of(" + type +
