@@ -137,7 +137,7 @@ enum class Needs : std::uint8_t {
 };
 
 // The columns of a metric in results.csv.
-enum class CsvColumns : std::uint8_t {
+enum class CsvForm : std::uint8_t {
   kNone,
   kBand,        // ID, ID_p05, ID_p95
   kValue,       // a series: its median
@@ -176,7 +176,7 @@ struct Metric {
   // (null: id). Sweeps: the name of its column in sweep.csv (null: none).
   const char* json_in = "";
   const char* json_name = nullptr;
-  CsvColumns csv = CsvColumns::kNone;
+  CsvForm csv = CsvForm::kNone;
   const char* sweep = nullptr;
   bool is_new = false;  // archives of simbench 0.1 lack it
 

@@ -14,7 +14,7 @@
 namespace simbench::reports {
 namespace {
 
-using evaluation::CsvColumns;
+using evaluation::CsvForm;
 using evaluation::Metric;
 using evaluation::Row;
 using evaluation::SeedScore;
@@ -23,16 +23,16 @@ std::string csv_line(const std::vector<std::string>& cells) {
   return fmt::format("{}\n", fmt::join(cells, ","));
 }
 
-void add_names(CsvColumns form, std::vector<std::string>& names) {
+void add_names(CsvForm form, std::vector<std::string>& names) {
   for (const Metric& metric : evaluation::metrics()) {
     if (metric.csv == form) names.emplace_back(metric.id);
-    if (metric.csv != form || form != CsvColumns::kBand) continue;
+    if (metric.csv != form || form != CsvForm::kBand) continue;
     names.push_back(fmt::format("{}_p05", metric.id));
     names.push_back(fmt::format("{}_p95", metric.id));
   }
 }
 
-void add_cells(CsvColumns form, const Row& row, std::vector<std::string>& cells) {
+void add_cells(CsvForm form, const Row& row, std::vector<std::string>& cells) {
   for (const Metric& metric : evaluation::metrics()) {
     if (metric.csv != form) continue;
     if (metric.is_count()) {
@@ -40,7 +40,7 @@ void add_cells(CsvColumns form, const Row& row, std::vector<std::string>& cells)
     } else {
       cells.push_back(csv_cell(metric.value(row)));
     }
-    if (form != CsvColumns::kBand) continue;
+    if (form != CsvForm::kBand) continue;
     cells.push_back(csv_cell(metric.series(row).p05));
     cells.push_back(csv_cell(metric.series(row).p95));
   }
@@ -50,12 +50,12 @@ std::vector<std::string> header(bool has_alignment) {
   std::vector<std::string> names = {"pipeline", "host_sync"};
   if (has_alignment) names.emplace_back("capture_alignment");
   names.insert(names.end(), {"device_time", "gathering"});
-  add_names(CsvColumns::kBand, names);
-  add_names(CsvColumns::kValue, names);
+  add_names(CsvForm::kBand, names);
+  add_names(CsvForm::kValue, names);
   names.insert(names.end(),
                {"published_amd_ms", "published_amd_inside", "published_amd_percentile",
                 "published_rmdv_ms", "published_rmdv_inside", "published_rmdv_attainable"});
-  add_names(CsvColumns::kValueAtEnd, names);
+  add_names(CsvForm::kValueAtEnd, names);
   names.emplace_back("scored_seeds");
   return names;
 }
@@ -135,11 +135,11 @@ std::string csv(const evaluation::Results& results) {
     std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync)};
     if (has_alignment) cells.push_back(csv_cell(row.capture_alignment));
     cells.insert(cells.end(), {csv_cell(row.device_time), csv_cell(row.gathering)});
-    add_cells(CsvColumns::kBand, row, cells);
-    add_cells(CsvColumns::kValue, row, cells);
+    add_cells(CsvForm::kBand, row, cells);
+    add_cells(CsvForm::kValue, row, cells);
     const std::vector<std::string> published = published_cells(row);
     cells.insert(cells.end(), published.begin(), published.end());
-    add_cells(CsvColumns::kValueAtEnd, row, cells);
+    add_cells(CsvForm::kValueAtEnd, row, cells);
     cells.push_back(std::to_string(evaluation::scored_seeds(row)));
     if (has_figures) cells.push_back(figures_cell(results, row));
     if (real) {

@@ -12,7 +12,7 @@
 namespace simbench::reports {
 
 // One line per pipeline: the metrics in the columns of evaluation/scoring/metrics.h, with the
-// published values before those of CsvColumns::kValueAtEnd, and scored_seeds as in json.h. If
+// published values before those of CsvForm::kValueAtEnd, and scored_seeds as in json.h. If
 // something steers the exposures of a row, a column capture_alignment after host_sync. If there are
 // published figures of other metrics, a column published_figures after scored_seeds: those of the
 // pipeline with their verdicts ("amd_ms at_most 2.5 holds"; none: too few seeds to tell). If a row

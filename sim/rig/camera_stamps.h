@@ -43,7 +43,7 @@ class CameraStamps {
     std::vector<FrameStamps>& stamps = world_.is_whole() ? kept_.emplace_back() : passing_;
     stamps.clear();
     stamps.reserve(period.frames.size());
-    const std::vector<CameraFrame>& frames = period.frames;
+    const std::vector<SimFrame>& frames = period.frames;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (i + kAhead < frames.size()) clocks_[frames[i + kAhead].camera].prefetch();
       stamps.push_back(stamps_of(frames[i]));
@@ -60,7 +60,7 @@ class CameraStamps {
 
   TrueTime date(TrueTime since_start) const { return start_ + since_start.time_since_epoch(); }
 
-  FrameStamps stamps_of(const CameraFrame& frame) {
+  FrameStamps stamps_of(const SimFrame& frame) {
     if (frame.fate != FrameFate::kDelivered) return {};
     DeviceClock& clock = clocks_[frame.camera];
     return {.sensor = clock.stamp(date(frame.mid_exposure()), frame.stamp_noise_ns),

@@ -19,7 +19,7 @@ constexpr int kSteeredParts = 8;
 constexpr std::int64_t kMoreSlots = 8;
 
 std::size_t bytes_of(const CameraPeriod& period) {
-  return sizeof(CameraPeriod) + period.frames.capacity() * sizeof(CameraFrame) +
+  return sizeof(CameraPeriod) + period.frames.capacity() * sizeof(SimFrame) +
          period.polls.capacity() * sizeof(CameraPoll);
 }
 
@@ -79,7 +79,7 @@ void CameraWorld::make_hosts() {
          .next_timer = {}});
   }
   for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
-    const CameraStream& stream = cameras_.stream(id);
+    const SimStream& stream = cameras_.stream(id);
     HostSide& host = hosts_[stream.host];
     if (host.end_stream == 0) {
       host.first_stream = id;
@@ -146,7 +146,7 @@ TrueTime CameraWorld::begin_part(CameraPeriod& period) {
 }
 
 void CameraWorld::steer(std::uint32_t camera, const FrameCommand& command, TrueTime at) {
-  for (CameraStream& stream : cameras_.streams()) {
+  for (SimStream& stream : cameras_.streams()) {
     if (stream.camera != camera || !stream.sensor) continue;
     stream.sensor->latch(command, at, made_until_);
     HostSide& host = hosts_[stream.host];
@@ -178,7 +178,7 @@ std::optional<CameraPulse> CameraWorld::begin_slot() {
 
 void CameraWorld::expose_by_pulse(const HostSide& host, const CameraPulse& pulse) {
   for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
-    CameraStream& stream = cameras_.stream(id);
+    SimStream& stream = cameras_.stream(id);
     if (stream.runs_free()) continue;
     const TrueTime at_camera = pulse.at + trigger_.delay_to(stream.camera);
     stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
@@ -194,7 +194,7 @@ void CameraWorld::expose_by_timers(HostSide& host, TrueTime before) {
   for (std::uint32_t first = host.first_stream; first < host.end_stream; first += kinds) {
     for (;; ++events_) {
       const std::uint32_t id = next_timer(first);
-      CameraStream& stream = cameras_.stream(id);
+      SimStream& stream = cameras_.stream(id);
       const TrueTime now = stream.next_timer();
       if (now >= before) {
         host.next_timer = std::min(host.next_timer, now);
@@ -217,7 +217,7 @@ std::uint32_t CameraWorld::next_timer(std::uint32_t first) const {
 }
 
 // Soon after its start a camera may expose late.
-Exposure CameraWorld::with_unsteady_start(CameraStream& stream, const Exposure& planned) const {
+Exposure CameraWorld::with_unsteady_start(SimStream& stream, const Exposure& planned) const {
   if (planned.start - stream.started >= unstable_start_) return planned;
   const double sigma_ms = scenario_.cameras.unstable_start_jitter_sigma_ms;
   const Nanoseconds late = from_ms(std::abs(stream.unsteadiness.normal(sigma_ms)));
@@ -225,7 +225,7 @@ Exposure CameraWorld::with_unsteady_start(CameraStream& stream, const Exposure& 
 }
 
 void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now) {
-  CameraStream& stream = cameras_.stream(stream_id);
+  SimStream& stream = cameras_.stream(stream_id);
   const scenarios::Cameras& cameras = scenario_.cameras;
   const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
   const double stamp_noise_ns = stream.stamp_noise.normal(stamp_noise_ns_);
@@ -234,15 +234,15 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
 
   const std::uint32_t id = frames_.add();
   FrameInFlight& way = frames_[id];
-  CameraFrame& frame = way.frame = {.stream = stream_id,
-                                    .camera = stream.camera,
-                                    .host = stream.host,
-                                    .counter = stream.counter++,
-                                    .kind = stream.kind,
-                                    .pulse = exposure.pulse,
-                                    .exposure_start = exposure.start,
-                                    .exposure_end = exposure.end,
-                                    .readout_start = exposure.end - stream.readout};
+  SimFrame& frame = way.frame = {.stream = stream_id,
+                                 .camera = stream.camera,
+                                 .host = stream.host,
+                                 .counter = stream.counter++,
+                                 .kind = stream.kind,
+                                 .pulse = exposure.pulse,
+                                 .exposure_start = exposure.start,
+                                 .exposure_end = exposure.end,
+                                 .readout_start = exposure.end - stream.readout};
   if (reference_ && stream.camera == 0) reference_->add(frame.mid_exposure());
   if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
     frame.fate = FrameFate::kLostInCamera;
@@ -310,8 +310,8 @@ auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime befo
 }
 
 void CameraWorld::offer(Bus& bus, const Step& offer) {
-  CameraFrame& frame = frames_[offer.frame].frame;
-  const CameraStream& stream = cameras_.stream(frame.stream);
+  SimFrame& frame = frames_[offer.frame].frame;
+  const SimStream& stream = cameras_.stream(frame.stream);
   const Nanoseconds at = offer.at.time_since_epoch();
   if (bus.controller.submit(at, stream.index_on_controller, stream.bytes, offer.frame)) return;
   frame.fate = FrameFate::kLostOnUsb;
@@ -320,8 +320,8 @@ void CameraWorld::offer(Bus& bus, const Step& offer) {
 
 void CameraWorld::deliver(HostSide& host, const Step& transferred) {
   FrameInFlight& way = frames_[transferred.frame];
-  CameraFrame& frame = way.frame;
-  CameraStream& stream = cameras_.stream(frame.stream);
+  SimFrame& frame = way.frame;
+  SimStream& stream = cameras_.stream(frame.stream);
   const TrueTime now = transferred.at;
   const double host_jitter_ns = host.jitter.at(now) * stream.transfer_ns;
   frame.transferred = now;
@@ -335,14 +335,14 @@ void CameraWorld::deliver(HostSide& host, const Step& transferred) {
 }
 
 // Those that were delivered or lost before that.
-void CameraWorld::hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames) {
+void CameraWorld::hand_out_frames(TrueTime before, std::vector<SimFrame>& frames) {
   sort(ended_);
   const auto end = std::find_if(ended_.begin(), ended_.end(),
                                 [before](const Step& ended) { return ended.at >= before; });
   frames.clear();
   frames.reserve(static_cast<std::size_t>(end - ended_.begin()));
   for (auto ended = ended_.begin(); ended != end; ++ended) {
-    CameraFrame& frame = frames.emplace_back(frames_[ended->frame].frame);
+    SimFrame& frame = frames.emplace_back(frames_[ended->frame].frame);
     frame.at = ended->at;
     if (reference_) frame.pulse = reference_->pulse_of(frame.mid_exposure());
     frames_.release(ended->frame);

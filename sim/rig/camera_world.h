@@ -63,8 +63,8 @@
 namespace simbench::sim {
 
 // A frame that was delivered or lost.
-struct CameraFrame {
-  std::uint32_t stream = 0;  // of Cameras::stream()
+struct SimFrame {
+  std::uint32_t stream = 0;  // of SimCameras::stream()
   std::uint32_t camera = 0;
   std::uint32_t host = 0;
   std::uint32_t counter = 0;
@@ -92,7 +92,7 @@ struct CameraPulse {
 // What happens from one pulse to the next, without what happens at `end`.
 struct CameraPeriod {
   std::optional<CameraPulse> pulse;  // at its beginning; none: missing, or before the first
-  std::vector<CameraFrame> frames;   // in the order of `at`
+  std::vector<SimFrame> frames;      // in the order of `at`
   std::vector<CameraPoll> polls;     // in the order of `end`
   TrueTime end{};
 };
@@ -140,11 +140,11 @@ class CameraWorld {
   std::uint64_t events() const { return events_; }
   std::uint64_t trace_hash() const { return trace_hash_; }
 
-  const Cameras& cameras() const { return cameras_; }
+  const SimCameras& cameras() const { return cameras_; }
 
  private:
   struct FrameInFlight {
-    CameraFrame frame;
+    SimFrame frame;
     double kernel_copy_ns = 0;
     double delivery_ns = 0;
   };
@@ -185,7 +185,7 @@ class CameraWorld {
   void expose_by_pulse(const HostSide& host, const CameraPulse& pulse);
   void expose_by_timers(HostSide& host, TrueTime before);
   std::uint32_t next_timer(std::uint32_t first) const;
-  Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
+  Exposure with_unsteady_start(SimStream& stream, const Exposure& planned) const;
   void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
   void transfer(const HostSide& host, TrueTime before);
   void transfer(Bus& bus, TrueTime before);
@@ -193,7 +193,7 @@ class CameraWorld {
   std::vector<Step>::iterator pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before);
   void offer(Bus& bus, const Step& offer);
   void deliver(HostSide& host, const Step& transferred);
-  void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
+  void hand_out_frames(TrueTime before, std::vector<SimFrame>& frames);
 
   const scenarios::Scenario& scenario_;
   std::uint64_t seed_;
@@ -205,7 +205,7 @@ class CameraWorld {
   Nanoseconds unstable_start_;
   double stamp_noise_ns_;  // sigma
   TriggerTree trigger_;
-  Cameras cameras_;
+  SimCameras cameras_;
   CameraFaults camera_faults_;
   std::vector<Bus> buses_;
   std::vector<double> transfer_ns_of_kind_;  // by the number of the camera's stream

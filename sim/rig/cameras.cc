@@ -66,8 +66,8 @@ bool has_steered_sensors(const scenarios::Scenario& scenario, Steering steering)
   return steering != Steering::kNone || !cameras.follows_trigger(cameras.streams.front());
 }
 
-Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
-                 Steering steering)
+SimCameras::SimCameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
+                       Steering steering)
     : scenario_(scenario), seed_(seed) {
   const auto count = static_cast<std::size_t>(scenario_.cameras.count);
   const std::size_t kinds = scenario_.cameras.streams.size();
@@ -86,7 +86,7 @@ Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTi
     exposures_.emplace_back(scenario_.cameras.auto_exposure, first_exposure(camera), seed, camera,
                             TrueTime{} + start_delay(scenario, seed, camera));
     for (std::size_t which = 0; which < kinds; ++which) {
-      CameraStream stream = make_stream(clocks[camera], camera, which);
+      SimStream stream = make_stream(clocks[camera], camera, which);
       stream.host = static_cast<std::uint32_t>(host);
       stream.controller = controller_of_host[host];
       stream.index_on_controller = static_cast<std::uint32_t>(place * kinds + which);
@@ -97,7 +97,7 @@ Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTi
 }
 
 // Nothing aligns their frames at the start.
-void Cameras::add_sensors(TrueTime start, Steering steering) {
+void SimCameras::add_sensors(TrueTime start, Steering steering) {
   const scenarios::FrameControlModel& model = *scenario_.cameras.frame_control;
   const double period_ns = 1e9 / scenario_.trigger.pulse_rate_hz();
   SteeredSensorSettings settings{
@@ -109,7 +109,7 @@ void Cameras::add_sensors(TrueTime start, Steering steering) {
       .is_ideal = steering == Steering::kIdeal,
       .first_due = TrueTime{} + from_ms(scenario_.trigger.start_delay_ms),
       .period_ns = period_ns};
-  for (CameraStream& stream : streams_) {
+  for (SimStream& stream : streams_) {
     settings.limits.exposure = first_exposure(stream.camera);
     RandomStream phase(seed_, "camera/free_running_phase", stream.camera);
     stream.started = TrueTime{} + start_delay(scenario_, seed_, stream.camera) +
@@ -123,7 +123,7 @@ void Cameras::add_sensors(TrueTime start, Steering steering) {
   }
 }
 
-CameraStream Cameras::make_stream(const DeviceClock& clock, std::size_t camera,
+SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
                                   std::size_t which) const {
   const scenarios::Stream& profile = scenario_.cameras.streams[which];
   const ShutterSettings shutter = shutter_settings(clock, camera, profile);
@@ -162,8 +162,8 @@ CameraStream Cameras::make_stream(const DeviceClock& clock, std::size_t camera,
           .unsteadiness = RandomStream(seed_, "camera/unsteadiness", id)};
 }
 
-ShutterSettings Cameras::shutter_settings(const DeviceClock& clock, std::size_t camera,
-                                          const scenarios::Stream& profile) const {
+ShutterSettings SimCameras::shutter_settings(const DeviceClock& clock, std::size_t camera,
+                                             const scenarios::Stream& profile) const {
   const scenarios::Cameras& cameras = scenario_.cameras;
   return {.mode = shutter_mode(cameras, profile),
           .mode_period_ns = 1e9 / profile.mode_rate_hz * clock.true_per_device(),
@@ -175,7 +175,7 @@ ShutterSettings Cameras::shutter_settings(const DeviceClock& clock, std::size_t 
           .free_run_after_periods = cameras.slave_free_run_after_periods};
 }
 
-Nanoseconds Cameras::first_exposure(std::size_t camera) const {
+Nanoseconds SimCameras::first_exposure(std::size_t camera) const {
   const scenarios::Cameras& cameras = scenario_.cameras;
   const auto host =
       static_cast<std::uint64_t>(scenario_.host_of(static_cast<std::int64_t>(camera)));
@@ -186,7 +186,7 @@ Nanoseconds Cameras::first_exposure(std::size_t camera) const {
   return from_ms(cameras.exposure_ms + periods * scenario_.trigger.period_ms());
 }
 
-std::vector<UsbController> Cameras::make_controllers() const {
+std::vector<UsbController> SimCameras::make_controllers() const {
   const scenarios::Usb& usb = scenario_.usb;
   const std::size_t kinds = scenario_.cameras.streams.size();
   const std::size_t streams = static_cast<std::size_t>(usb.cameras_per_controller) * kinds;

@@ -12,8 +12,8 @@
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2 ("Cameras"),
 // docs/reference/d455.md.
 //
-//   Cameras cameras(scenario, seed);
-//   for (CameraStream& stream : cameras.streams()) timers.push_back(stream.shutter.next_timer());
+//   SimCameras cameras(scenario, seed);
+//   for (SimStream& stream : cameras.streams()) timers.push_back(stream.shutter.next_timer());
 //   std::vector<DeviceClock> clocks = device_clocks(scenario, seed, capture_start);
 #ifndef SIMBENCH_SIM_RIG_CAMERAS_H_
 #define SIMBENCH_SIM_RIG_CAMERAS_H_
@@ -39,7 +39,7 @@
 namespace simbench::sim {
 
 // One image stream of one camera.
-struct CameraStream {
+struct SimStream {
   std::uint32_t camera;
   std::uint32_t host;
   std::uint32_t controller;
@@ -83,24 +83,24 @@ std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std:
 // reaches the cameras.
 bool has_steered_sensors(const scenarios::Scenario& scenario, Steering steering);
 
-class Cameras {
+class SimCameras {
  public:
   // `scenario` must outlive the cameras. `start`: of the capture, which the oscillators of steered
   // sensors depend on.
-  Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
-          Steering steering = Steering::kNone);
+  SimCameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
+             Steering steering = Steering::kNone);
   // The exposure time that a camera begins with at `at`.
   Nanoseconds exposure(std::size_t camera, TrueTime at) { return exposures_[camera].at(at); }
 
-  CameraStream& stream(std::uint32_t id) { return streams_[id]; }
-  const CameraStream& stream(std::uint32_t id) const { return streams_[id]; }
-  std::vector<CameraStream>& streams() { return streams_; }
+  SimStream& stream(std::uint32_t id) { return streams_[id]; }
+  const SimStream& stream(std::uint32_t id) const { return streams_[id]; }
+  std::vector<SimStream>& streams() { return streams_; }
 
-  // A controller of its own for each group of cameras, as CameraStream::controller counts them.
+  // A controller of its own for each group of cameras, as SimStream::controller counts them.
   std::vector<UsbController> make_controllers() const;
 
  private:
-  CameraStream make_stream(const DeviceClock& clock, std::size_t camera, std::size_t which) const;
+  SimStream make_stream(const DeviceClock& clock, std::size_t camera, std::size_t which) const;
   void add_sensors(TrueTime start, Steering steering);
   ShutterSettings shutter_settings(const DeviceClock& clock, std::size_t camera,
                                    const scenarios::Stream& profile) const;
@@ -110,7 +110,7 @@ class Cameras {
   std::uint64_t seed_;
   std::uint32_t controllers_ = 0;
   std::vector<AutoExposureLoop> exposures_;
-  std::vector<CameraStream> streams_;
+  std::vector<SimStream> streams_;
 };
 
 }  // namespace simbench::sim

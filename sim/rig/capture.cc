@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kAhead = 16;  // frames, for the cache
 
 // A camera's stamp by its host's steady clock, with the noise of its own stamps.
-DeviceStamp host_stamp(const CameraFrame& frame, SteadyTime reading) {
+DeviceStamp host_stamp(const SimFrame& frame, SteadyTime reading) {
   const SteadyTime noisy = reading + from_ns_down(frame.stamp_noise_ns);
   return {static_cast<std::uint32_t>(floor_div(noisy.time_since_epoch().count(), 1000))};
 }
@@ -163,7 +163,7 @@ void Capture::report_poll(const CameraPoll& poll) {
 
 // Those of this period until `last`, at least one.
 void Capture::report_frames(TrueTime last) {
-  const std::vector<CameraFrame>& frames = period_->frames;
+  const std::vector<SimFrame>& frames = period_->frames;
   const std::size_t first = frames_reported_;
   do {
     ++frames_reported_;
@@ -177,11 +177,11 @@ void Capture::report_block(std::size_t first, std::size_t end) {
   records_.clear();
   truths_.clear();
   flushed_ = 0;
-  const std::vector<CameraFrame>& frames = period_->frames;
+  const std::vector<SimFrame>& frames = period_->frames;
   for (std::size_t i = first; i < end; ++i) {
     if (i + 2 * kAhead < end) clocks_[frames[i + 2 * kAhead].host]->prefetch();
     if (i + kAhead < end) clocks_[frames[i + kAhead].host]->prefetch_setting();
-    const CameraFrame& frame = frames[i];
+    const SimFrame& frame = frames[i];
     if (frame.fate != FrameFate::kDelivered || is_stopped(frame)) continue;
     stamp(frame, period_stamps_[i]);
     if (led_clock_) report_sighting(frame);
@@ -196,7 +196,7 @@ void Capture::flush() {
 }
 
 // Of the LED clock, if the newest frame of the block shows it: after the frame.
-void Capture::report_sighting(const CameraFrame& frame) {
+void Capture::report_sighting(const SimFrame& frame) {
   const auto lit = led_clock_->read(frame, world_->cameras().stream(frame.stream).readout);
   if (!lit) return;
   flush();
@@ -207,7 +207,7 @@ void Capture::report_sighting(const CameraFrame& frame) {
 }
 
 void Capture::report_single(std::size_t number) {
-  const CameraFrame& frame = period_->frames[number];
+  const SimFrame& frame = period_->frames[number];
   if (frame.fate == FrameFate::kDelivered) {
     if (is_stopped(frame)) return;
     report_block(number, number + 1);
@@ -217,7 +217,7 @@ void Capture::report_single(std::size_t number) {
 }
 
 // What its host and the master make of a frame.
-void Capture::stamp(const CameraFrame& frame, const FrameStamps& stamps) {
+void Capture::stamp(const SimFrame& frame, const FrameStamps& stamps) {
   const SystemClock& clock = *clocks_[frame.host];
   const TrueTime middle = date(frame.mid_exposure());
   const TrueTime at = date(frame.at);

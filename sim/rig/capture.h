@@ -87,12 +87,12 @@ class Capture {
   void report_frames(TrueTime last);
   void report_block(std::size_t first, std::size_t end);
   void report_single(std::size_t number);
-  void report_sighting(const CameraFrame& frame);
+  void report_sighting(const SimFrame& frame);
   // Whether its host is stopped when a frame comes.
-  bool is_stopped(const CameraFrame& frame) const {
+  bool is_stopped(const SimFrame& frame) const {
     return outages_.host_stopped(static_cast<PeerId>(frame.host), date(frame.at));
   }
-  void stamp(const CameraFrame& frame, const FrameStamps& stamps);
+  void stamp(const SimFrame& frame, const FrameStamps& stamps);
   // Reports those of the block that are not reported.
   void flush();
 

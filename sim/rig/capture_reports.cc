@@ -7,7 +7,7 @@
 namespace simbench::sim {
 namespace {
 
-ObservedFrame observed_frame(const CameraFrame& frame, Nanoseconds shift) {
+ObservedFrame observed_frame(const SimFrame& frame, Nanoseconds shift) {
   ObservedFrame observed{.camera = frame.camera,
                          .host = frame.host,
                          .stream = frame.kind,
@@ -43,7 +43,7 @@ bool FrameFeeds::is_awaited() const {
   return false;
 }
 
-void FrameFeeds::on_delivery(const FrameRecord& record, const CameraStream& stream, TrueTime at) {
+void FrameFeeds::on_delivery(const FrameRecord& record, const SimStream& stream, TrueTime at) {
   if (has_traffic()) {
     hosts_.network().send_capture_traffic(stream.host, traffic_share_ * stream.bytes, at);
   }
@@ -81,7 +81,7 @@ void CaptureReports::pulse(std::int64_t slot, TrueTime at) const {
   observer_->on_pulse({.pulse = slot, .at = at});
 }
 
-void CaptureReports::observed(const CameraFrame& frame, Nanoseconds shift) const {
+void CaptureReports::observed(const SimFrame& frame, Nanoseconds shift) const {
   if (observer_ == nullptr) return;
   observer_->sample_until(frame.at + shift);
   observer_->on_frame(observed_frame(frame, shift));

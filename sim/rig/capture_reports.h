@@ -40,7 +40,7 @@ class FrameFeeds {
   bool is_open() const;
   bool is_awaited() const;
 
-  void on_delivery(const FrameRecord& record, const CameraStream& stream, TrueTime at);
+  void on_delivery(const FrameRecord& record, const SimStream& stream, TrueTime at);
   void on_poll(const DevicePoll& poll, std::uint32_t host);
 
  private:
@@ -75,11 +75,11 @@ class CaptureReports {
     sink_.on_frames(records, truths);
   }
   // One was recorded.
-  void used(const FrameRecord& record, const CameraStream& stream, TrueTime at) const {
+  void used(const FrameRecord& record, const SimStream& stream, TrueTime at) const {
     if (feeds_ != nullptr) feeds_->on_delivery(record, stream, at);
   }
   // One was delivered or lost; its times are to be shifted.
-  void observed(const CameraFrame& frame, Nanoseconds shift) const;
+  void observed(const SimFrame& frame, Nanoseconds shift) const;
 
  private:
   RecordingSink& sink_;

@@ -57,7 +57,7 @@ bool LedClock::looks(std::uint32_t camera, TrueTime time) {
   return true;
 }
 
-std::optional<LitArc> LedClock::read(const CameraFrame& frame, Nanoseconds readout) {
+std::optional<LitArc> LedClock::read(const SimFrame& frame, Nanoseconds readout) {
   SIMBENCH_ASSERT(frame.camera < rows_.size(), "a frame of a camera of this world");
   if (frame.kind != scored_ || !looks(frame.camera, frame.mid_exposure())) return std::nullopt;
   const Nanoseconds from_first_row = from_ns(rows_[frame.camera] * to_ns(readout));

@@ -56,7 +56,7 @@ class LedClock {
 
   // What is read from the frame, if anything. Frames of a camera come in the order of their
   // exposures, each once. `readout`: of its rolling shutter.
-  std::optional<LitArc> read(const CameraFrame& frame, Nanoseconds readout);
+  std::optional<LitArc> read(const SimFrame& frame, Nanoseconds readout);
 
   // The clock's own time.
   Nanoseconds at(TrueTime time) const;

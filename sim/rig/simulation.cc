@@ -92,10 +92,10 @@ std::vector<ClockInterface> interfaces_of(HostGroup& hosts) {
 }
 
 // One run of the world.
-class Run {
+class WorldRun {
  public:
-  Run(const scenarios::Scenario& scenario, const RecordingRequest& request,
-      const EngineLimits& limits, SharedCameras& cameras, RecordingSink& sink)
+  WorldRun(const scenarios::Scenario& scenario, const RecordingRequest& request,
+           const EngineLimits& limits, SharedCameras& cameras, RecordingSink& sink)
       : scenario_(scenario),
         host_sync_(request.host_sync),
         alignment_(request.capture_alignment),
@@ -129,10 +129,10 @@ class Run {
     if (sampling_) hosts_.network().observe(*sampling_);
     if (sampling_ || frame_feeds_.has_traffic()) hosts_.network().before_messages(catch_up);
   }
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
+  WorldRun(const WorldRun&) = delete;
+  WorldRun& operator=(const WorldRun&) = delete;
   // Coroutines that still wait go first: they use the hosts.
-  ~Run() { context_.reset(); }
+  ~WorldRun() { context_.reset(); }
 
   RecordingCost run(RecordingSink& sink) {
     sink.on_start(capture_.layout());
@@ -287,7 +287,7 @@ class Simulation final : public RecordingSource {
       : scenario_(scenario), limits_(limits), cameras_(scenario, limits) {}
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
-    return Run(scenario_, request, limits_, cameras_, sink).run(sink);
+    return WorldRun(scenario_, request, limits_, cameras_, sink).run(sink);
   }
 
  private:

@@ -37,7 +37,7 @@ constexpr evaluation::Metric kTrend = {
     .unit = "ms",
     .place =
         evaluation::SeriesPlace{&MetricValues<double>::trend_ms, &MetricValues<Series>::trend_ms},
-    .csv = evaluation::CsvColumns::kBand,
+    .csv = evaluation::CsvForm::kBand,
     .sweep = "trend_ms",
     .judged = evaluation::kJudgedMs};
 

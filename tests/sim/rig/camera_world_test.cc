@@ -83,11 +83,11 @@ scenarios::Scenario world_of(unsigned seed) {
   return s;
 }
 
-std::vector<CameraFrame> frames_of(CameraWorld& world) {
-  std::vector<CameraFrame> frames;
+std::vector<SimFrame> frames_of(CameraWorld& world) {
+  std::vector<SimFrame> frames;
   TrueTime begin{};
   for (std::size_t i = 0; const CameraPeriod* period = world.period(i); ++i) {
-    for (const CameraFrame& frame : period->frames) {
+    for (const SimFrame& frame : period->frames) {
       EXPECT_TRUE(frame.at >= begin && frame.at < period->end);
       frames.push_back(frame);
     }
@@ -96,7 +96,7 @@ std::vector<CameraFrame> frames_of(CameraWorld& world) {
   return frames;
 }
 
-bool are_same(const CameraFrame& a, const CameraFrame& b) {
+bool are_same(const SimFrame& a, const SimFrame& b) {
   return a.stream == b.stream && a.counter == b.counter && a.exposure_us == b.exposure_us &&
          a.stamp_noise_ns == b.stamp_noise_ns && a.fate == b.fate && a.pulse == b.pulse &&
          a.exposure_start == b.exposure_start && a.exposure_end == b.exposure_end &&
@@ -104,7 +104,7 @@ bool are_same(const CameraFrame& a, const CameraFrame& b) {
          (a.fate == FrameFate::kLostInCamera || a.offered == b.offered);
 }
 
-std::string text_of(const CameraFrame& frame) {
+std::string text_of(const SimFrame& frame) {
   const auto ms = [](TrueTime at) { return to_ms(at.time_since_epoch()); };
   return fmt::format(
       "stream {} counter {} fate {} pulse {}: exposed {} to {}, offered {}, transferred {}, at {}",
@@ -118,9 +118,9 @@ TEST(CameraWorld, StagesGiveWhatEventsGive) {
   for (unsigned seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const scenarios::Scenario scenario = world_of(seed);
-    const std::vector<CameraFrame> expected = EventByEvent(scenario, seed).run();
+    const std::vector<SimFrame> expected = EventByEvent(scenario, seed).run();
     CameraWorld world(scenario, seed);
-    const std::vector<CameraFrame> frames = frames_of(world);
+    const std::vector<SimFrame> frames = frames_of(world);
     ASSERT_EQ(frames.size(), expected.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
       ASSERT_TRUE(are_same(frames[i], expected[i]))
@@ -137,12 +137,12 @@ TEST(CameraWorld, NeedNotBeKept) {
   const scenarios::Scenario scenario = lively_scenario();
   CameraWorld kept(scenario, 1);
   CameraWorld streamed(scenario, 1, TrueTime{}, {}, 0);
-  const std::vector<CameraFrame> all = nonempty(frames_of(kept));
-  const std::vector<CameraFrame> passing = frames_of(streamed);
+  const std::vector<SimFrame> all = nonempty(frames_of(kept));
+  const std::vector<SimFrame> passing = frames_of(streamed);
   EXPECT_TRUE(std::equal(all.begin(), all.end(), passing.begin(), passing.end(), are_same));
   EXPECT_TRUE(kept.is_whole());
   EXPECT_FALSE(streamed.is_whole());
-  const std::vector<CameraFrame> again = frames_of(kept);
+  const std::vector<SimFrame> again = frames_of(kept);
   EXPECT_TRUE(std::equal(all.begin(), all.end(), again.begin(), again.end(), are_same));
   EXPECT_EQ(kept.trace_hash(), streamed.trace_hash());
 }

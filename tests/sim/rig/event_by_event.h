@@ -30,7 +30,7 @@ class EventByEvent {
   }
 
   // All frames in the order in which they were delivered or lost.
-  std::vector<CameraFrame> run() {
+  std::vector<SimFrame> run() {
     plan_slot(0);
     for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) plan_timer(id);
     engine_.run();
@@ -46,7 +46,7 @@ class EventByEvent {
   void on_slot(std::int64_t slot) {
     if (trigger_.pulse(slot)) {
       for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
-        CameraStream& stream = cameras_.stream(id);
+        SimStream& stream = cameras_.stream(id);
         if (stream.shutter.mode() == ShutterMode::kFreeRunning) continue;
         const TrueTime at = engine_.now() + trigger_.delay_to(stream.camera);
         stream.shutter.set_exposure(cameras_.exposure(stream.camera, at));
@@ -59,7 +59,7 @@ class EventByEvent {
     const TrueTime at = cameras_.stream(id).shutter.next_timer();
     if (at == TrueTime::max() || at >= trigger_.due(slots_.last + 2)) return;
     engine_.call_at(at, [this, id] {
-      CameraStream& stream = cameras_.stream(id);
+      SimStream& stream = cameras_.stream(id);
       stream.shutter.set_exposure(cameras_.exposure(stream.camera, engine_.now()));
       if (const auto exposure = stream.shutter.on_timer(engine_.now())) expose(id, *exposure);
       plan_timer(id);
@@ -68,7 +68,7 @@ class EventByEvent {
 
   void expose(std::uint32_t id, Exposure exposure) {
     const scenarios::Cameras& parameters = scenario_.cameras;
-    CameraStream& stream = cameras_.stream(id);
+    SimStream& stream = cameras_.stream(id);
     const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
     const double noise_ns =
         stream.stamp_noise.normal(parameters.sensor_stamp_jitter_sigma_us * 1e3);
@@ -88,7 +88,7 @@ class EventByEvent {
     if (parameters.drop_probability > 0 && stream.loss.chance(parameters.drop_probability)) {
       return end(ticket, FrameFate::kLostInCamera);
     }
-    CameraFrame& frame = frames_.back();
+    SimFrame& frame = frames_.back();
     const TrueTime read_out = exposure.end - stream.readout;
     frame.exposure_us = static_cast<std::uint32_t>((read_out - exposure.start).count() / 1000);
     frame.stamp_noise_ns = noise_ns;
@@ -99,8 +99,8 @@ class EventByEvent {
   }
 
   void offer(std::uint32_t ticket) {
-    CameraFrame& frame = frames_[ticket];
-    const CameraStream& stream = cameras_.stream(frame.stream);
+    SimFrame& frame = frames_[ticket];
+    const SimStream& stream = cameras_.stream(frame.stream);
     frame.offered = engine_.now();
     if (!buses_[stream.controller].submit(frame.offered.time_since_epoch(),
                                           stream.index_on_controller, stream.bytes, ticket)) {
@@ -120,8 +120,8 @@ class EventByEvent {
   }
 
   void deliver(std::uint32_t ticket) {
-    CameraFrame& frame = frames_[ticket];
-    CameraStream& stream = cameras_.stream(frame.stream);
+    SimFrame& frame = frames_[ticket];
+    SimStream& stream = cameras_.stream(frame.stream);
     frame.transferred = engine_.now();
     frame.copied = frame.transferred + from_ns(delays_[ticket].kernel_copy_ns);
     const double host_ns = jitters_[stream.host].at(frame.transferred) * stream.transfer_ns;
@@ -143,14 +143,14 @@ class EventByEvent {
   EvaluatedSlots slots_;
   Engine engine_;
   TriggerTree trigger_;
-  Cameras cameras_;
+  SimCameras cameras_;
   CameraFaults faults_;
   std::vector<UsbController> buses_;
   std::vector<HostJitter> jitters_;
   std::vector<HostLoad> loads_;
-  std::vector<CameraFrame> frames_;
+  std::vector<SimFrame> frames_;
   std::vector<FrameDelays::Draw> delays_;
-  std::vector<CameraFrame> ended_;
+  std::vector<SimFrame> ended_;
 };
 
 }  // namespace simbench::sim
