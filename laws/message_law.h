@@ -70,9 +70,9 @@ struct DatagramFate {
   bool is_reordered = false;
   double detour_ms = 0;
 
-  // Of a datagram that is not lost and by its latency alone would arrive at `arrival`, its copy at
-  // `copy_arrival`; `last` is the arrival that the order of the link demands, and is kept up to
-  // date.
+  // By their latencies alone the datagram would arrive at `arrival`, its copy at `copy_arrival`.
+  // `last` is the arrival that the order of the link demands, and is kept up to date. For a
+  // datagram that is not lost.
   template <class Time>
   DatagramArrivals<Time> arrivals(Time arrival, Time copy_arrival, Time& last) const {
     const Time in_order = std::max(arrival, last);

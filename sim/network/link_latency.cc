@@ -27,7 +27,7 @@ int switches_between(const scenarios::Network& network, PeerId from, PeerId to) 
   return switches.empty() ? 1 : 1 + static_cast<int>(std::abs(switches[from] - switches[to]));
 }
 
-// Of this direction against the other.
+// How much longer this direction takes than the other.
 double asymmetry_ms(const scenarios::Network& network, const scenarios::Link& link,
                     std::uint64_t run_seed, PeerId from, PeerId to) {
   const PeerId lower = std::min(from, to);

@@ -21,8 +21,8 @@ struct LinkFaults {
   std::vector<Nanoseconds> late;  // when the copies of a late message come
 };
 
-// Of five messages, at random, one is lost, one comes twice and one late. `engine` must outlive the
-// link.
+// One of five messages, at random, is lost, one comes twice and one late. `engine` must outlive
+// the link.
 inline LinkScript unreliable_link(boost::random::mt19937_64& engine, Nanoseconds latency,
                                   LinkFaults faults) {
   return [&engine, latency, faults = std::move(faults)](std::size_t, const Bytes&) {

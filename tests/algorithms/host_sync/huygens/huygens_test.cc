@@ -65,7 +65,7 @@ TEST_F(HuygensTest, AnAsymmetryOfAPortStays) {
 }
 
 TEST_F(HuygensTest, ImpureProbesDoNotCount) {
-  // Of two pairs in three one probe is late: by less than the other's delay, so a minimum would
+  // In two pairs of three one probe is late: by less than the other's delay, so a minimum would
   // not notice; all the others from the master are late by 0.3 ms and impure by 20 us.
   world_.script_link(0, 1, [](std::size_t index, const Bytes&) {
     const bool is_pure = index % 6 < 2;
