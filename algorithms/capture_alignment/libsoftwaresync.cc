@@ -115,7 +115,7 @@ std::vector<CaptureAlignmentEntry> capture_alignment_libsoftwaresync() {
        .summary = "single longer frames move each camera to a goal phase, once, then free run",
        .source = kPhaseAligner,
        .needs = {Need::kFrameControl}},
-      PhaseAlignSettings{}, steer_each(align_phase))};
+      PhaseAlignSettings{}, each_camera(align_phase))};
 }
 
 }  // namespace simbench

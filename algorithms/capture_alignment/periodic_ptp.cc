@@ -81,7 +81,7 @@ std::vector<CaptureAlignmentEntry> capture_alignment_periodic_ptp() {
        .summary = "frames on a grid of the common clock, each error taken off one frame",
        .source = kBasler,
        .needs = {Need::kFrameControl}},
-      GridSettings{}, steer_each(follow_grid))};
+      GridSettings{}, each_camera(follow_grid))};
 }
 
 }  // namespace simbench

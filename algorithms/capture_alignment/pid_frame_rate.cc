@@ -120,7 +120,7 @@ std::vector<CaptureAlignmentEntry> capture_alignment_pid_frame_rate() {
        .summary = "a PID regulator of the frame rate locks the frames to slots of the clock",
        .source = kPtpSlots,
        .needs = {Need::kFrameControl}},
-      PidSettings{}, steer_each(regulate_rate))};
+      PidSettings{}, each_camera(regulate_rate))};
 }
 
 }  // namespace simbench

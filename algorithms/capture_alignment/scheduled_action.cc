@@ -91,7 +91,7 @@ std::vector<CaptureAlignmentEntry> capture_alignment_scheduled_action() {
        .summary = "all cameras start at one time of the common clock, then run free",
        .source = kScheduledAction,
        .needs = {Need::kFrameControl}},
-      ScheduledActionSettings{}, steer_each(start_on_schedule))};
+      ScheduledActionSettings{}, each_camera(start_on_schedule))};
 }
 
 }  // namespace simbench

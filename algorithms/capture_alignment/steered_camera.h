@@ -96,7 +96,7 @@ class EachCamera final : public CaptureAlignment {
 // What makes such an algorithm of its settings, for with_settings() (algorithms/registry.h):
 // steer(host, camera, settings).
 template <class Settings>
-auto steer_each(Task<void> (*steer)(Host& host, FrameControl& camera, Settings settings)) {
+auto each_camera(Task<void> (*steer)(Host& host, FrameControl& camera, Settings settings)) {
   return [steer](const Settings& settings) {
     return std::make_unique<EachCamera>([steer, settings](Host& host, FrameControl& camera) {
       return steer(host, camera, settings);

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/parameter_binder.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
@@ -36,6 +37,13 @@ class ClockService : public HostSync {
  private:
   Settings settings_;
 };
+
+// The parameter warm_up_s, which is the time for which a service has run.
+inline void bind_warm_up(ParameterBinder& parameters, Nanoseconds& service_time,
+                         const char* source = kAssumption) {
+  parameters.number("warm_up_s", service_time, 1, 1e6,
+                    "how long the service has run before the capture", source);
+}
 
 }  // namespace simbench
 

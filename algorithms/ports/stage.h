@@ -1,10 +1,12 @@
 // The stages of a pipeline, each of which is one choice of an algorithm (docs/design.md section 1).
 //
-// What is the same for every stage goes over kStages, in their order; what differs is a value of
-// each in a StageArray, or a member named after the stage.
+// What is the same for every stage goes over kPipelineStages, in their order; what differs is a
+// value of each in a StageArray, or a member named after the stage.
 //
 //   StageArray<std::size_t> widths{};
-//   for (const StageInfo& stage : kStages) widths[stage.id] = std::string(stage.name).size();
+//   for (const StageInfo& stage : kPipelineStages) {
+//     widths[stage.id] = std::string(stage.name).size();
+//   }
 #ifndef SIMBENCH_ALGORITHMS_PORTS_STAGE_H_
 #define SIMBENCH_ALGORITHMS_PORTS_STAGE_H_
 
@@ -25,7 +27,7 @@ struct StageInfo {
   bool may_be_absent = false;  // a pipeline need not have it
 };
 
-inline constexpr std::array<StageInfo, 4> kStages = {{
+inline constexpr std::array<StageInfo, 4> kPipelineStages = {{
     {PipelineStage::kHostSync, "host_sync"},
     {PipelineStage::kCaptureAlignment, "capture_alignment", true},
     {PipelineStage::kDeviceTime, "device_time"},
@@ -33,12 +35,12 @@ inline constexpr std::array<StageInfo, 4> kStages = {{
 }};
 
 constexpr const char* name_of(PipelineStage stage) {
-  return kStages[static_cast<std::size_t>(stage)].name;
+  return kPipelineStages[static_cast<std::size_t>(stage)].name;
 }
 
 // A T for each stage.
 template <class T>
-class StageArray : public std::array<T, kStages.size()> {
+class StageArray : public std::array<T, kPipelineStages.size()> {
  public:
   T& operator[](PipelineStage stage) { return this->at(static_cast<std::size_t>(stage)); }
   const T& operator[](PipelineStage stage) const {
@@ -66,14 +68,14 @@ auto& at_stage(Staged& staged, PipelineStage stage) {
 // Gives `to` the algorithms that `from` names.
 template <class From, class To>
 void copy_stages(const From& from, To& to) {
-  for (const StageInfo& stage : kStages) at_stage(to, stage.id) = at_stage(from, stage.id);
+  for (const StageInfo& stage : kPipelineStages) at_stage(to, stage.id) = at_stage(from, stage.id);
 }
 
 // The stages that a table of some pipelines or rows has: those that none may lack or one has.
 template <class Staged>
 std::vector<StageInfo> present_stages(const std::vector<Staged>& all) {
   std::vector<StageInfo> present;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     const bool is_named = std::any_of(all.begin(), all.end(), [&stage](const Staged& each) {
       return !at_stage(each, stage.id).empty();
     });
@@ -99,7 +101,7 @@ std::string stages_formula(const Stages& stages, const std::string& blank = "") 
 template <class Staged>
 std::string joined_stages(const Staged& staged, const std::string& between) {
   std::string text;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     const std::string& name = at_stage(staged, stage.id);
     if (!name.empty()) text += (text.empty() ? "" : between) + name;
   }

@@ -134,7 +134,7 @@ struct Described {
 // its variants.
 std::vector<Described> algorithms_called(const std::string& name) {
   std::vector<Described> all;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     for (const AlgorithmInfo* const info : algorithms_of(stage.id)) {
       all.push_back({stage.name, info});
     }
@@ -236,7 +236,7 @@ int describe(const DescribeOptions& options) {
   std::vector<std::string> known;
   known.reserve(builtin.size());
   for (const scenarios::BuiltinScenario& each : builtin) known.push_back(each.name);
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     for (const AlgorithmInfo* const info : algorithms_of(stage.id)) known.push_back(info->name);
   }
   const std::vector<std::string> similar = scenarios::nearest(options.what, known);

@@ -66,7 +66,7 @@ std::string bare_names(const ListOptions& options) {
     for (const auto& scenario : scenarios::builtin_scenarios()) names.push_back(scenario.name);
   }
   if (options.what.empty() || options.what == "algorithms") {
-    for (const StageInfo& stage : kStages) {
+    for (const StageInfo& stage : kPipelineStages) {
       for (const AlgorithmInfo* const info : algorithms_of(stage.id)) names.push_back(info->name);
     }
   }
@@ -123,7 +123,7 @@ std::string details_text(const StageInfo& stage) {
 // The text of each stage, with the suffixes of device times below theirs.
 std::string stages_text(std::string (*text_of)(const StageInfo&)) {
   std::string text;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     text += (text.empty() ? "" : "\n") + text_of(stage);
     if (stage.id == PipelineStage::kDeviceTime) text += kVariants;
   }

@@ -35,22 +35,22 @@ Override appended(const std::string& name, const Pipeline& first, AdHoc allowed)
   const std::string label = "--pipelines " + scenarios::shown_text(name);
   const std::vector<std::string> parts = stages_of(name);
   const bool has_empty = std::ranges::count(parts, "") > 0;
-  if (parts.size() == 2 || parts.size() > kStages.size() || has_empty) {
+  if (parts.size() == 2 || parts.size() > kPipelineStages.size() || has_empty) {
     throw InputError(fmt::format(
         "{}: found {}, allowed: {}{} (`simbench list` names them)", label,
         has_empty ? "an empty part" : fmt::format("{} parts", parts.size()),
-        allowed == AdHoc::kHostSyncToo ? "host_sync or " : "", stages_formula(kStages)));
+        allowed == AdHoc::kHostSyncToo ? "host_sync or " : "", stages_formula(kPipelineStages)));
   }
   Pipeline stated = first;
   auto part = parts.begin();
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     if (part == parts.end()) break;
     const bool is_left_out =
-        stage.may_be_absent && parts.size() > 1 && parts.size() < kStages.size();
+        stage.may_be_absent && parts.size() > 1 && parts.size() < kPipelineStages.size();
     at_stage(stated, stage.id) = is_left_out ? "" : *part++;
   }
   nlohmann::json pipeline = {{"name", name}};
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     const std::string& algorithm = at_stage(stated, stage.id);
     if (!algorithm.empty()) pipeline[stage.name] = algorithm;
   }

@@ -47,7 +47,7 @@ void sort_by_recall(std::vector<Rank>& ranks) {
 bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
   const Row& first = *ranks.front().row;
   const auto same_stamps = [&first](const Rank& rank) {
-    return std::ranges::all_of(kStages, [&](const StageInfo& stage) {
+    return std::ranges::all_of(kPipelineStages, [&](const StageInfo& stage) {
       return stage.id == PipelineStage::kGathering ||
              at_stage(*rank.row, stage.id) == at_stage(first, stage.id);
     });

@@ -37,7 +37,7 @@ std::string unknown(const std::string& name, const std::vector<std::string>& kno
 
 std::vector<const AlgorithmInfo*> all_algorithms() {
   std::vector<const AlgorithmInfo*> infos;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     std::ranges::copy(algorithms_of(stage.id), std::back_inserter(infos));
   }
   return infos;
@@ -342,7 +342,7 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
     if (found == known.end()) {
       throw scenarios::InputError(
           fmt::format("pipelines of {}: {}; others by their algorithms, as {}", scenario.name,
-                      unknown(*name, known), stages_formula(kStages)));
+                      unknown(*name, known), stages_formula(kPipelineStages)));
     }
     if (std::find(names.begin(), name, *name) != name) {
       throw scenarios::InputError(fmt::format("pipelines: \"{}\" is named twice", *name));

@@ -171,7 +171,7 @@ void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::
 Row read_stages(const JsonNode& node) {
   Row row;
   row.pipeline = node["pipeline"].text();
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     if (stage.may_be_absent && !node.has(stage.name)) continue;
     at_stage(row, stage.id) = node[stage.name].text();
   }

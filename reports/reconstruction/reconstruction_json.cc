@@ -37,7 +37,7 @@ Json published_error_json(const ReprojectionRow& row) {
 
 Json reprojection_row_json(const ReprojectionRow& row) {
   Json all = {{"pipeline", row.pipeline}};
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     const std::string& name = at_stage(row, stage.id);
     if (!name.empty()) all[stage.name] = name;
   }

@@ -41,12 +41,12 @@ Json metric_json(const evaluation::Metric& metric, const evaluation::Row& row) {
 
 Json row_json(const evaluation::Row& row) {
   Json all = {{"pipeline", row.pipeline}};
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     if (!stage.may_be_absent) all[stage.name] = at_stage(row, stage.id);
   }
   all["offline"] = row.offline;
   if (!row.model.empty()) all["model"] = row.model;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     const std::string& name = at_stage(row, stage.id);
     if (stage.may_be_absent && !name.empty()) all[stage.name] = name;
   }

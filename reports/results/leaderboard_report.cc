@@ -91,7 +91,7 @@ std::string composition(const Board& board) {
   for (const Rank& rank : board.online) rows.push_back(rank.row);
   for (const Rank& rank : board.offline) rows.push_back(rank.row);
   std::string text;
-  for (const StageInfo& stage : kStages) {
+  for (const StageInfo& stage : kPipelineStages) {
     const std::string& name = at_stage(*rows.front(), stage.id);
     const bool is_varied =
         std::ranges::any_of(rows, [&](const Row* row) { return at_stage(*row, stage.id) != name; });

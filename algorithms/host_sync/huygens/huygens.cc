@@ -331,8 +331,7 @@ const char* const kHuygensPaper = "Geng et al., NSDI 2018";
 }  // namespace
 
 void HuygensSettings::bind(ParameterBinder& parameters) {
-  parameters.number("warm_up_s", service_time, 1, 1e6,
-                    "how long the service has run before the capture", kAssumption);
+  bind_warm_up(parameters, service_time);
   parameters.number("neighbours", neighbours, 2, 100, "hosts that each host probes, on average",
                     kHuygensPaper);
   parameters.number("probe_interval_ms", probe_interval, 0.1, 1e6,

@@ -3,7 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ptp/ptp_port.h"
 #include "algorithms/registry.h"
 
@@ -19,19 +18,10 @@ Task<void> serve_ptp_slave(Host& host, PeerId slave, PtpSettings settings,
 }  // namespace
 
 Task<void> serve_ptp(Host& host, std::vector<PeerId> slaves, PtpSettings settings) {
-  const bool needs_card = settings.stamps == StampSource::kCard;
-  // The slaves will report that no Sync came.
-  if (needs_card && host.hardware_clock() == nullptr) co_return;
-  auto is_ready = std::make_shared<bool>(!needs_card);
-  std::vector<Task<void>> tasks;
-  tasks.reserve(slaves.size() + 1);
-  for (const PeerId slave : slaves) {
-    tasks.push_back(serve_ptp_slave(host, slave, settings, is_ready));
-  }
-  if (needs_card) {
-    tasks.push_back(keep_coupled(host, ClockKind::kHardware, settings.servo_limits, is_ready));
-  }
-  co_await join_all(std::move(tasks));
+  const auto serve = [&host, settings](PeerId slave, std::shared_ptr<const bool> is_ready) {
+    return serve_ptp_slave(host, slave, settings, std::move(is_ready));
+  };
+  return serve_slaves(host, std::move(slaves), settings.stamps, settings.servo_limits, serve);
 }
 
 Task<void> follow_ptp(Host& host, PeerId master, PtpSettings settings) {
@@ -51,9 +41,7 @@ void PtpSettings::bind(ParameterBinder& parameters) {
       sync_interval == kSixteenPerSecond
           ? "sixteen a second: G.8275.1's rate"
           : "linuxptp: logSyncInterval, logMinDelayReqInterval, defaults 0";
-  parameters.number("warm_up_s", service_time, 1, 1e6,
-                    "how long the service has run before the capture",
-                    "assumption: until the default servo has settled");
+  bind_warm_up(parameters, service_time, "assumption: until the default servo has settled");
   parameters.choice("servo", servo,
                     {{"pi", ServoKind::kPi}, {"linreg", ServoKind::kLinearRegression}},
                     "the servo that steers the clock that stamps", kLinuxPtp);

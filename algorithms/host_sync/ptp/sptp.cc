@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/host_sync/ptp/ptp_clocks.h"
 #include "algorithms/host_sync/ptp/ptp_message.h"
@@ -199,19 +198,10 @@ class SptpClient {
 }  // namespace
 
 Task<void> serve_sptp(Host& host, std::vector<PeerId> clients, SptpSettings settings) {
-  const bool needs_card = settings.stamps == StampSource::kCard;
-  // The clients will report that nothing came.
-  if (needs_card && host.hardware_clock() == nullptr) co_return;
-  auto is_ready = std::make_shared<bool>(!needs_card);
-  std::vector<Task<void>> tasks;
-  tasks.reserve(clients.size() + 1);
-  for (const PeerId client : clients) {
-    tasks.push_back(serve_sptp_client(host, client, settings.stamps, is_ready));
-  }
-  if (needs_card) {
-    tasks.push_back(keep_coupled(host, ClockKind::kHardware, settings.servo_limits, is_ready));
-  }
-  co_await join_all(std::move(tasks));
+  const auto serve = [&host, settings](PeerId client, std::shared_ptr<const bool> is_ready) {
+    return serve_sptp_client(host, client, settings.stamps, std::move(is_ready));
+  };
+  return serve_slaves(host, std::move(clients), settings.stamps, settings.servo_limits, serve);
 }
 
 Task<void> follow_sptp(Host& host, PeerId server, SptpSettings settings) {
@@ -222,8 +212,7 @@ Task<void> follow_sptp(Host& host, PeerId server, SptpSettings settings) {
 void SptpSettings::bind(ParameterBinder& parameters) {
   const char* const by_default = "facebook/time, ptp/sptp/client/config.go: default";
   const char* const example = "facebook/time, ptp/sptp/README.md: its example";
-  parameters.number("warm_up_s", service_time, 1, 1e6,
-                    "how long the service has run before the capture", kAssumption);
+  bind_warm_up(parameters, service_time);
   parameters.log2_seconds("log_interval", interval, -7, 12,
                           "log2 of the seconds between two exchanges", by_default);
   parameters.number("exchange_timeout_ms", exchange_timeout, 1, 1e6,

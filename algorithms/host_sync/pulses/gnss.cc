@@ -84,8 +84,7 @@ Task<void> follow_gnss(Host& host, PeerId /*master*/, GnssSettings settings) {
 }
 
 void GnssSettings::bind(ParameterBinder& parameters) {
-  parameters.number("warm_up_s", service_time, 1, 1e6,
-                    "how long the service has run before the capture", kAssumption);
+  bind_warm_up(parameters, service_time);
   parameters.number("window_s", window, 4, 1e5, "span of the pulses that the line is fitted to",
                     "assumption: short against the wander of a quartz");
   steering.bind(parameters);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/join.h"
 #include "algorithms/registry.h"
 
@@ -192,8 +193,7 @@ Task<Nanoseconds> TwoWaySlave::turn() {
 }
 
 void TwoWaySettings::bind(ParameterBinder& parameters, TwoWayHull::Settings& estimator) {
-  parameters.number("warm_up_s", service_time, 1, 1e6,
-                    "how long the service has run before the capture", kAssumption);
+  bind_warm_up(parameters, service_time);
   parameters.number("exchanges", exchanges, 1, 1e5,
                     "exchanges of the first burst, and of each round whose minimum is taken",
                     kAssumption);
@@ -254,8 +254,7 @@ struct SoftwareSync {
   Nanoseconds early_stop = from_ms(1);
 
   void bind(ParameterBinder& parameters) {
-    parameters.number("warm_up_s", two_way.service_time, 1, 1e6,
-                      "how long the service has run before the capture", kAssumption);
+    bind_warm_up(parameters, two_way.service_time);
     parameters.number("exchanges", exchanges, 1, 1e5, "most exchanges of a round", kSoftwareSync);
     parameters.number("early_stop_ms", early_stop, 0, 1e5, "a round trip below this ends the round",
                       kSoftwareSync);
