@@ -1,11 +1,11 @@
 // The stages of a pipeline, each of which is one choice of an algorithm (docs/design.md section 1).
 //
-// What is the same for every stage goes over kPipelineStages, in their order; what differs is a
-// value of each in a StageArray, or a member named after the stage.
+// What is the same for every stage goes over kPipelineStages, in their order. What has something
+// for each has a member named after it: at_stage() finds the one of a stage.
 //
-//   StageArray<std::size_t> widths{};
+//   scenarios::Pipeline pipeline = scenario.pipelines.front();
 //   for (const StageInfo& stage : kPipelineStages) {
-//     widths[stage.id] = std::string(stage.name).size();
+//     if (at_stage(pipeline, stage.id) == "oracle") print(stage.name);
 //   }
 #ifndef SIMBENCH_ALGORITHMS_PORTS_STAGE_H_
 #define SIMBENCH_ALGORITHMS_PORTS_STAGE_H_
@@ -37,16 +37,6 @@ inline constexpr std::array<StageInfo, 4> kPipelineStages = {{
 constexpr const char* name_of(PipelineStage stage) {
   return kPipelineStages[static_cast<std::size_t>(stage)].name;
 }
-
-// A T for each stage.
-template <class T>
-class StageArray : public std::array<T, kPipelineStages.size()> {
- public:
-  T& operator[](PipelineStage stage) { return this->at(static_cast<std::size_t>(stage)); }
-  const T& operator[](PipelineStage stage) const {
-    return this->at(static_cast<std::size_t>(stage));
-  }
-};
 
 // The member for a stage of what has one of the same type for each, as the algorithms' names of a
 // pipeline or a row.
