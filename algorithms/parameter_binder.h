@@ -14,6 +14,7 @@
 //       parameters.number("window_ms", window, 1, 1e4, "span of the points", "assumption");
 //     }
 //   };
+//
 //   std::vector<ParameterSpec> specs = specs_of(FitSettings{.points = 8});
 //   FitSettings settings = settings_from<FitSettings>(check_parameters(specs, {}));
 #ifndef SIMBENCH_ALGORITHMS_PARAMETER_BINDER_H_
