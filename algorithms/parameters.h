@@ -1,11 +1,12 @@
 // Parameters of an algorithm: what it declares, and the checked values it is made with.
 //
-// An algorithm states each parameter once - name, default, range, meaning, source. A scenario may
-// set it; check_parameters() refuses names that were not declared, values out of range and values
-// that contradict each other, so a factory can rely on what it gets.
+// An algorithm states each parameter once - name, default, range, meaning, source -, most simply
+// beside the member that holds it (parameter_binder.h). A scenario may set it; check_parameters()
+// refuses names that were not declared, values out of range and values that contradict each other,
+// so a factory can rely on what it gets.
 //
-//   const std::vector<ParameterSpec> specs = {
-//       number_parameter("stamps", 100, 1, 1e6, "n_d", "assumption")};
+//   const std::vector<ParameterSpec> specs = {{.name = "stamps", .fallback = 100,
+//       .low = 1, .high = 1e6, .choices = {}, .meaning = "n_d", .source = "assumption"}};
 //   Parameters parameters = check_parameters(specs, {{"stamps", 10.0}});
 //   parameters.number("stamps");   // 10
 #ifndef SIMBENCH_ALGORITHMS_PARAMETERS_H_
@@ -88,29 +89,8 @@ class Parameters {
 // found and what is allowed.
 Parameters check_parameters(const std::vector<ParameterSpec>& specs, const ParameterValues& given);
 
-// Short forms for the parameters that an algorithm declares.
-//
-//   entry.info.parameters = {
-//       number_parameter("window_s", 10, 0.1, 1e6, "span of the hull", "TICSync"),
-//       choice_parameter("stamps", {"transmit", "naive"}, "what t1 and t3 are", "NTP")};
-
 // The source of a value that nobody documents.
 inline constexpr const char* kAssumption = "assumption";
-
-// A number from `low` to `high`, both included.
-ParameterSpec number_parameter(std::string name, double fallback, double low, double high,
-                               std::string meaning, std::string source);
-
-// The same, and not below the number of that other parameter, which is declared too.
-ParameterSpec not_below(const std::string& other, ParameterSpec spec);
-
-// One of `choices`; the first is the default.
-ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
-                               std::string meaning, std::string source);
-
-// Yes or no.
-ParameterSpec flag_parameter(std::string name, bool fallback, std::string meaning,
-                             std::string source);
 
 }  // namespace simbench
 

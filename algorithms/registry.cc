@@ -1,85 +1,70 @@
 #include "algorithms/registry.h"
 
+#include <algorithm>
 #include <cstddef>
-#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 // simbench's own algorithms, in the order in which they are listed: a line for each file that
-// defines some. A line FILE below stands for a function of that file,
-// std::vector<HostSyncEntry> host_sync_FILE() (or device_time_, gathering_).
-#define SIMBENCH_HOST_SYNC(FILE) \
-  FILE(yoon2021)                 \
-  FILE(limits)                   \
-  FILE(two_way)                  \
-  FILE(ptp)                      \
-  FILE(sptp)                     \
-  FILE(huygens)                  \
-  FILE(common_view)              \
-  FILE(gnss)                     \
-  FILE(ntp)                      \
-  FILE(w32time)                  \
-  FILE(chrony)
-#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
-  FILE(limits)                           \
-  FILE(libsoftwaresync)                  \
-  FILE(rpi_sync)                         \
-  FILE(scheduled_action)                 \
-  FILE(periodic_ptp)                     \
-  FILE(pid_frame_rate)                   \
-  FILE(phase_rate)
-#define SIMBENCH_DEVICE_TIME(FILE) \
-  FILE(yoon2021)                   \
-  FILE(hull)                       \
-  FILE(two_way_poll)               \
-  FILE(offset_filters)             \
-  FILE(librealsense_global)        \
-  FILE(host_stamps)                \
-  FILE(rocsync_led)
-#define SIMBENCH_GATHERING(FILE) \
-  FILE(yoon2021)                 \
-  FILE(genlock)                  \
-  FILE(approximate_time)         \
-  FILE(epsilon)                  \
-  FILE(librealsense)             \
-  FILE(k4a)                      \
-  FILE(phase_binning)            \
-  FILE(oracle)
+// defines some, with the function of that file that returns them.
+#define SIMBENCH_ALGORITHMS(FILE)                                 \
+  FILE(HostSyncEntry, host_sync_yoon2021)                         \
+  FILE(HostSyncEntry, host_sync_limits)                           \
+  FILE(HostSyncEntry, host_sync_two_way)                          \
+  FILE(HostSyncEntry, host_sync_ptp)                              \
+  FILE(HostSyncEntry, host_sync_sptp)                             \
+  FILE(HostSyncEntry, host_sync_huygens)                          \
+  FILE(HostSyncEntry, host_sync_common_view)                      \
+  FILE(HostSyncEntry, host_sync_gnss)                             \
+  FILE(HostSyncEntry, host_sync_ntp)                              \
+  FILE(HostSyncEntry, host_sync_w32time)                          \
+  FILE(HostSyncEntry, host_sync_chrony)                           \
+  FILE(CaptureAlignmentEntry, capture_alignment_limits)           \
+  FILE(CaptureAlignmentEntry, capture_alignment_libsoftwaresync)  \
+  FILE(CaptureAlignmentEntry, capture_alignment_rpi_sync)         \
+  FILE(CaptureAlignmentEntry, capture_alignment_scheduled_action) \
+  FILE(CaptureAlignmentEntry, capture_alignment_periodic_ptp)     \
+  FILE(CaptureAlignmentEntry, capture_alignment_pid_frame_rate)   \
+  FILE(CaptureAlignmentEntry, capture_alignment_phase_rate)       \
+  FILE(DeviceTimeEntry, device_time_yoon2021)                     \
+  FILE(DeviceTimeEntry, device_time_hull)                         \
+  FILE(DeviceTimeEntry, device_time_two_way_poll)                 \
+  FILE(DeviceTimeEntry, device_time_offset_filters)               \
+  FILE(DeviceTimeEntry, device_time_librealsense_global)          \
+  FILE(DeviceTimeEntry, device_time_host_stamps)                  \
+  FILE(DeviceTimeEntry, device_time_rocsync_led)                  \
+  FILE(GatheringEntry, gathering_yoon2021)                        \
+  FILE(GatheringEntry, gathering_genlock)                         \
+  FILE(GatheringEntry, gathering_approximate_time)                \
+  FILE(GatheringEntry, gathering_epsilon)                         \
+  FILE(GatheringEntry, gathering_librealsense)                    \
+  FILE(GatheringEntry, gathering_k4a)                             \
+  FILE(GatheringEntry, gathering_phase_binning)                   \
+  FILE(GatheringEntry, gathering_oracle)
 
 namespace simbench {
 
-#define SIMBENCH_DECLARE(file) std::vector<HostSyncEntry> host_sync_##file();
-SIMBENCH_HOST_SYNC(SIMBENCH_DECLARE)
-#undef SIMBENCH_DECLARE
-#define SIMBENCH_DECLARE(file) std::vector<CaptureAlignmentEntry> capture_alignment_##file();
-SIMBENCH_CAPTURE_ALIGNMENT(SIMBENCH_DECLARE)
-#undef SIMBENCH_DECLARE
-#define SIMBENCH_DECLARE(file) std::vector<DeviceTimeEntry> device_time_##file();
-SIMBENCH_DEVICE_TIME(SIMBENCH_DECLARE)
-#undef SIMBENCH_DECLARE
-#define SIMBENCH_DECLARE(file) std::vector<GatheringEntry> gathering_##file();
-SIMBENCH_GATHERING(SIMBENCH_DECLARE)
+#define SIMBENCH_DECLARE(Entry, function) std::vector<Entry> function();
+SIMBENCH_ALGORITHMS(SIMBENCH_DECLARE)
 #undef SIMBENCH_DECLARE
 
 namespace {
 
 // The algorithms of one stage, in order of registration.
 template <class Entry>
-class Stage {
+class Registry {
  public:
-  Stage(std::string name, std::initializer_list<std::vector<Entry>> own) : name_(std::move(name)) {
-    for (const std::vector<Entry>& file : own) {
-      for (const Entry& entry : file) add(entry);
-    }
+  Registry() {
+#define SIMBENCH_ADD(Listed, function) add_own(function);
+    SIMBENCH_ALGORITHMS(SIMBENCH_ADD)
+#undef SIMBENCH_ADD
     own_ = entries_.size();
   }
 
   void add(Entry entry) {
-    if (find(entry.info.name) != nullptr) {
-      throw std::invalid_argument(name_ + " algorithm \"" + entry.info.name +
-                                  "\" is registered twice");
-    }
+    if (find(entry.info.name) != nullptr) refuse(entry, "is registered twice");
     entries_.push_back(std::move(entry));
   }
 
@@ -87,90 +72,97 @@ class Stage {
     const Entry* const former = find(entry.info.name);
     if (former == nullptr) return add(std::move(entry));
     const auto place = static_cast<std::size_t>(former - entries_.data());
-    if (place < own_) {
-      throw std::invalid_argument(name_ + " algorithm \"" + entry.info.name +
-                                  "\" is one of simbench's own; choose another name");
-    }
+    if (place < own_) refuse(entry, "is one of simbench's own; choose another name");
     entries_[place] = std::move(entry);
   }
 
   const Entry* find(const std::string& name) const {
-    for (const Entry& entry : entries_) {
-      if (entry.info.name == name) return &entry;
-    }
-    return nullptr;
+    const auto found = std::ranges::find_if(
+        entries_, [&name](const Entry& entry) { return entry.info.name == name; });
+    return found == entries_.end() ? nullptr : &*found;
   }
 
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
-  std::string name_;
+  template <class Listed>
+  void add_own(std::vector<Listed> (*listed)()) {
+    if constexpr (std::is_same_v<Listed, Entry>) {
+      for (Entry& entry : listed()) add(std::move(entry));
+    }
+  }
+
+  [[noreturn]] static void refuse(const Entry& entry, const std::string& why) {
+    throw std::invalid_argument(std::string(name_of(Entry::kStage)) + " algorithm \"" +
+                                entry.info.name + "\" " + why);
+  }
+
   std::vector<Entry> entries_;
   std::size_t own_ = 0;  // the first so many are simbench's own
 };
 
-Stage<HostSyncEntry>& host_sync_stage() {
-#define SIMBENCH_ENTRIES(file) host_sync_##file(),
-  static Stage<HostSyncEntry> stage("host_sync", {SIMBENCH_HOST_SYNC(SIMBENCH_ENTRIES)});
-#undef SIMBENCH_ENTRIES
-  return stage;
+template <class Entry>
+Registry<Entry>& registry() {
+  static Registry<Entry> registry;
+  return registry;
 }
-Stage<CaptureAlignmentEntry>& capture_alignment_stage() {
-#define SIMBENCH_ENTRIES(file) capture_alignment_##file(),
-  static Stage<CaptureAlignmentEntry> stage("capture_alignment",
-                                            {SIMBENCH_CAPTURE_ALIGNMENT(SIMBENCH_ENTRIES)});
-#undef SIMBENCH_ENTRIES
-  return stage;
-}
-Stage<DeviceTimeEntry>& device_time_stage() {
-#define SIMBENCH_ENTRIES(file) device_time_##file(),
-  static Stage<DeviceTimeEntry> stage("device_time", {SIMBENCH_DEVICE_TIME(SIMBENCH_ENTRIES)});
-#undef SIMBENCH_ENTRIES
-  return stage;
-}
-Stage<GatheringEntry>& gathering_stage() {
-#define SIMBENCH_ENTRIES(file) gathering_##file(),
-  static Stage<GatheringEntry> stage("gathering", {SIMBENCH_GATHERING(SIMBENCH_ENTRIES)});
-#undef SIMBENCH_ENTRIES
-  return stage;
+
+template <class Entry>
+std::vector<const AlgorithmInfo*> infos_of() {
+  std::vector<const AlgorithmInfo*> infos;
+  for (const Entry& entry : algorithms<Entry>()) infos.push_back(&entry.info);
+  return infos;
 }
 
 }  // namespace
 
-void register_host_sync(HostSyncEntry entry) { host_sync_stage().add(std::move(entry)); }
-void register_capture_alignment(CaptureAlignmentEntry entry) {
-  capture_alignment_stage().add(std::move(entry));
+template <class Entry>
+void register_algorithm(Entry entry) {
+  registry<Entry>().add(std::move(entry));
 }
-void register_device_time(DeviceTimeEntry entry) { device_time_stage().add(std::move(entry)); }
-void register_gathering(GatheringEntry entry) { gathering_stage().add(std::move(entry)); }
+template <class Entry>
+void replace_algorithm(Entry entry) {
+  registry<Entry>().replace(std::move(entry));
+}
+template <class Entry>
+const std::vector<Entry>& algorithms() {
+  return registry<Entry>().entries();
+}
+template <class Entry>
+const Entry* find_algorithm(const std::string& name) {
+  return registry<Entry>().find(name);
+}
 
-void replace_host_sync(HostSyncEntry entry) { host_sync_stage().replace(std::move(entry)); }
-void replace_capture_alignment(CaptureAlignmentEntry entry) {
-  capture_alignment_stage().replace(std::move(entry));
-}
-void replace_device_time(DeviceTimeEntry entry) { device_time_stage().replace(std::move(entry)); }
-void replace_gathering(GatheringEntry entry) { gathering_stage().replace(std::move(entry)); }
+#define SIMBENCH_STAGE(Entry)                             \
+  template void register_algorithm<Entry>(Entry);         \
+  template void replace_algorithm<Entry>(Entry);          \
+  template const std::vector<Entry>& algorithms<Entry>(); \
+  template const Entry* find_algorithm<Entry>(const std::string&);
+SIMBENCH_STAGE(HostSyncEntry)
+SIMBENCH_STAGE(CaptureAlignmentEntry)
+SIMBENCH_STAGE(DeviceTimeEntry)
+SIMBENCH_STAGE(GatheringEntry)
+#undef SIMBENCH_STAGE
 
-const std::vector<HostSyncEntry>& host_sync_algorithms() { return host_sync_stage().entries(); }
-const std::vector<CaptureAlignmentEntry>& capture_alignment_algorithms() {
-  return capture_alignment_stage().entries();
+std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage) {
+  switch (stage) {
+    case PipelineStage::kHostSync:
+      return infos_of<HostSyncEntry>();
+    case PipelineStage::kCaptureAlignment:
+      return infos_of<CaptureAlignmentEntry>();
+    case PipelineStage::kDeviceTime:
+      return infos_of<DeviceTimeEntry>();
+    case PipelineStage::kGathering:
+      break;
+  }
+  return infos_of<GatheringEntry>();
 }
-const std::vector<DeviceTimeEntry>& device_time_algorithms() {
-  return device_time_stage().entries();
-}
-const std::vector<GatheringEntry>& gathering_algorithms() { return gathering_stage().entries(); }
 
-const HostSyncEntry* find_host_sync(const std::string& name) {
-  return host_sync_stage().find(name);
-}
-const CaptureAlignmentEntry* find_capture_alignment(const std::string& name) {
-  return capture_alignment_stage().find(name);
-}
-const DeviceTimeEntry* find_device_time(const std::string& name) {
-  return device_time_stage().find(name);
-}
-const GatheringEntry* find_gathering(const std::string& name) {
-  return gathering_stage().find(name);
+const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name) {
+  for (const AlgorithmInfo* const info : algorithms_of(stage)) {
+    if (info->name == name) return info;
+  }
+  return nullptr;
 }
 
 }  // namespace simbench

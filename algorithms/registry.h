@@ -1,18 +1,20 @@
 // The algorithms a scenario can name: simbench's own, and those that a user registers.
 //
 // A registered algorithm is a name, a line about it, its parameters and a factory. Pipelines name
-// one algorithm per stage (of capture_alignment, none if they like); `simbench list algorithms`
-// prints them all. An algorithm of your own, from your own repository, needs
-// find_package(simbench), one registration and a call of run_command_line (cli/command_line.h):
+// one algorithm per stage (ports/stage.h); `simbench list algorithms` prints them all. An algorithm
+// of your own, from your own repository, needs find_package(simbench), one registration and a call
+// of run_command_line (cli/command_line.h):
 //
-//   simbench::register_device_time({
-//       .info = {.name = "mine", .family = "mine", .summary = "...", .source = "...", ...},
-//       .make = [](const simbench::Parameters& p) { return std::make_unique<Mine>(p); }});
+//   register_algorithm(with_settings<DeviceTimeEntry>(
+//       {.name = "mine", .family = "mine", .summary = "...", .source = "..."}, MySettings{},
+//       kMake<Mine>));
 //
-// Parameters are looked up in the scenario under /algorithms/<family>/<parameter>.
+// Its settings state the parameters (parameter_binder.h), which are looked up in the scenario under
+// /algorithms/<family>/<parameter>.
 // Registration is not thread-safe: do it while nothing runs. A name may be registered once per
 // stage; a second registration throws std::invalid_argument. Where definitions come again, as from
-// a cell of a notebook, replace_...() takes the place of one that was registered from outside.
+// a cell of a notebook, replace_algorithm() takes the place of one that was registered from
+// outside.
 #ifndef SIMBENCH_ALGORITHMS_REGISTRY_H_
 #define SIMBENCH_ALGORITHMS_REGISTRY_H_
 
@@ -20,15 +22,19 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/device_time.h"
 #include "algorithms/gathering/gathering.h"
+#include "algorithms/parameter_binder.h"
 #include "algorithms/parameters.h"
-#include "algorithms/ports/capture_alignment.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/ports/stage.h"
 
 namespace simbench {
+
+class CaptureAlignment;  // algorithms/ports/capture_alignment.h
+class HostSync;          // algorithms/ports/host_sync.h
 
 // What an algorithm needs of the world beyond messages and clocks. A run in a world that lacks it
 // is refused before it begins.
@@ -55,46 +61,63 @@ struct AlgorithmInfo {
 };
 
 struct HostSyncEntry {
+  static constexpr PipelineStage kStage = PipelineStage::kHostSync;
   AlgorithmInfo info;
   std::function<std::unique_ptr<HostSync>(const Parameters&)> make;
 };
 struct CaptureAlignmentEntry {
+  static constexpr PipelineStage kStage = PipelineStage::kCaptureAlignment;
   AlgorithmInfo info;
   std::function<std::unique_ptr<CaptureAlignment>(const Parameters&)> make;
 };
 struct DeviceTimeEntry {
+  static constexpr PipelineStage kStage = PipelineStage::kDeviceTime;
   AlgorithmInfo info;
   // Empty for "oracle", which needs the truth that only evaluation has.
   std::function<std::unique_ptr<DeviceTimeEstimator>(const Parameters&)> make;
 };
 struct GatheringEntry {
+  static constexpr PipelineStage kStage = PipelineStage::kGathering;
   AlgorithmInfo info;
   std::function<std::unique_ptr<Gatherer>(const Parameters&, const GatheringSetup&)> make;
 };
 
-void register_host_sync(HostSyncEntry entry);
-void register_capture_alignment(CaptureAlignmentEntry entry);
-void register_device_time(DeviceTimeEntry entry);
-void register_gathering(GatheringEntry entry);
+// An entry of an algorithm whose parameters its settings state: make(settings), of gathering
+// make(settings, setup), gets those of a run. `defaults` are those of this entry.
+template <class Entry, class Settings, class Make>
+Entry with_settings(AlgorithmInfo info, const Settings& defaults, Make make) {
+  info.parameters = specs_of(defaults);
+  return {.info = std::move(info),
+          .make = [defaults, make](const Parameters& parameters, const auto&... setup) {
+            return make(settings_from(parameters, defaults), setup...);
+          }};
+}
+
+// For a class that is constructed from its settings.
+template <class Algorithm>
+inline constexpr auto kMake =
+    [](const auto& settings) { return std::make_unique<Algorithm>(settings); };
+
+// Entry is the stage's: HostSyncEntry, CaptureAlignmentEntry, DeviceTimeEntry or GatheringEntry.
+template <class Entry>
+void register_algorithm(Entry entry);
 
 // The same, but in place of an entry of that name. Throws std::invalid_argument if it is one of
 // simbench's own.
-void replace_host_sync(HostSyncEntry entry);
-void replace_capture_alignment(CaptureAlignmentEntry entry);
-void replace_device_time(DeviceTimeEntry entry);
-void replace_gathering(GatheringEntry entry);
+template <class Entry>
+void replace_algorithm(Entry entry);
 
 // In order of registration, simbench's own first.
-const std::vector<HostSyncEntry>& host_sync_algorithms();
-const std::vector<CaptureAlignmentEntry>& capture_alignment_algorithms();
-const std::vector<DeviceTimeEntry>& device_time_algorithms();
-const std::vector<GatheringEntry>& gathering_algorithms();
+template <class Entry>
+const std::vector<Entry>& algorithms();
 
 // By name; null if there is none.
-const HostSyncEntry* find_host_sync(const std::string& name);
-const CaptureAlignmentEntry* find_capture_alignment(const std::string& name);
-const DeviceTimeEntry* find_device_time(const std::string& name);
-const GatheringEntry* find_gathering(const std::string& name);
+template <class Entry>
+const Entry* find_algorithm(const std::string& name);
+
+// Of any stage, in the same order; null likewise.
+std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage);
+const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name);
 
 }  // namespace simbench
 

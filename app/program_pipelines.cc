@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "algorithms/ports/host_sync.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/node_programs.h"
 #include "processes/placeholders.h"

@@ -81,11 +81,11 @@ class CheckedSource final : public RecordingSource {
     RecordingCost cost = source_->record(request, check);
     for (const evaluation::PipelineChoice& choice : choices_) {
       if (choice.pipeline.name != request.pipeline) continue;
-      for (const Need need : choice.device_time.info.needs) {
+      for (const Need need : choice.device_time.info().needs) {
         const char* const missing = check.lacking(need);
         if (missing == nullptr) continue;
         throw RecordingFailed(fmt::format("{} needs {}, and none was recorded",
-                                          choice.device_time.info.name, missing));
+                                          choice.device_time.info().name, missing));
       }
     }
     return cost;

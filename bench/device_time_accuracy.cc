@@ -69,7 +69,7 @@ void print_table(std::uint32_t seeds) {
   fmt::print("\n|{:-<24}|", "");
   for (std::size_t i = 0; i < columns.size(); ++i) fmt::print("{:-<27}|", "");
   fmt::print("\n");
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     const std::string& family = entry.info.family;
     if (!entry.make || family == "eq1" || family == "sensor_normalised" ||
         family == "host_stamps" || family == "rocsync_led") {

@@ -78,7 +78,7 @@ void stamp_run(benchmark::State& state, const DeviceTimeRun& run, Make make) {
 }
 
 void register_benchmarks() {
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     if (!entry.make) continue;
     benchmark::RegisterBenchmark(entry.info.name.c_str(), [&entry](benchmark::State& state) {
       stamp_run(state, minute(),

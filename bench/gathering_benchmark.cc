@@ -81,7 +81,7 @@ void add_benchmarks() {
                  {"lossy", {.lost_every = 5}},
                  {"equal", {.noise_us = 1, .lost_every = 5}},
                  {"noisy", {.noise_us = 10'000}}};
-  for (const GatheringEntry& entry : simbench::gathering_algorithms()) {
+  for (const GatheringEntry& entry : simbench::algorithms<simbench::GatheringEntry>()) {
     for (const auto& [name, stream] : streams) {
       benchmark::RegisterBenchmark(
           (entry.info.name + "/" + name).c_str(),

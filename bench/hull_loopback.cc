@@ -37,6 +37,7 @@
 #include <thread>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "hardware/clock/software_clock.h"
 #include "hardware/net/peer_network.h"
@@ -184,7 +185,7 @@ std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe
   if (flooded) flood = start_hostile_flood({.target_port = port, .pretended_port = master_port});
   if (flood < 0) fmt::print(stderr, "raw sockets are not permitted here: no flood\n");
   RealHost host(context, me, clock, network, [](const RecordingEvent&) {});
-  const HostSyncEntry* entry = find_host_sync("two_way_hull");
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>("two_way_hull");
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, {}));
   network.start();
   boost::asio::co_spawn(context,

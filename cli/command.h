@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "cli/messages.h"
 #include "scenarios/loader.h"
 
@@ -92,7 +93,7 @@ class Command {
   void scenario(std::string& value);
   // --pipelines of the scenario. `others`: how pipelines are stated that it does not have.
   void pipelines(std::vector<std::string>& names,
-                 const std::string& others = "host_sync[+capture_alignment]+device_time+gathering");
+                 const std::string& others = stages_formula(kPipelineStages));
   // --set /json/pointer=value, repeatable; parsed by overrides_of().
   void sets(std::vector<std::string>& values);
   // --python: files whose algorithms there are besides; before runs().

@@ -2,7 +2,7 @@
 // command: register them (algorithms/registry.h), then pass the arguments of main().
 //
 //   int main(int argc, char** argv) {
-//     simbench::register_device_time({...});
+//     simbench::register_algorithm<simbench::DeviceTimeEntry>({...});
 //     return simbench::run_command_line(argc, argv);
 //   }
 //

@@ -1,6 +1,8 @@
 // What an algorithm declares of a parameter, in the words of `list algorithms` and `describe`.
 //
-//   const ParameterSpec spec = number_parameter("points", 16, 1, 100, "of the fit", "assumption");
+//   const ParameterSpec spec{.name = "points", .fallback = 16, .low = 1, .high = 100, .choices =
+//   {},
+//       .meaning = "of the fit", .source = "assumption"};
 //   default_text(spec);  // "16"
 //   range_text(spec);    // "1 to 100"
 #ifndef SIMBENCH_CLI_PARAMETER_TEXT_H_

@@ -94,7 +94,7 @@ struct Watch {
   std::uint64_t total = 0;                     // how many; 0: unknown until it begins
   std::string kept = "no result was written";  // what an interruption leaves
   // Whether an interruption waits until the work has ended in order, however long that takes, but
-  // for a second one: a rig's cameras and trigger must be switched off.
+  // for a second one: a rig's cameras and trigger must be switched off, a recording's end noted.
   bool waits_for_end = false;
 };
 

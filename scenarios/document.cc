@@ -323,6 +323,14 @@ void Places::adopt(const std::string& pointer, const Places& other) {
                  other.places_.lower_bound(end_below(pointer)));
 }
 
+void Places::graft(const std::string& pointer, const Places& other, const std::string& as) {
+  set(as, other.nearest(pointer));
+  const auto end = other.places_.lower_bound(end_below(pointer));
+  for (auto at = other.places_.lower_bound(begin_below(pointer)); at != end; ++at) {
+    set(as + at->first.substr(pointer.size()), at->second);
+  }
+}
+
 void fail_to_read(const std::string& prefix, std::string_view reason) {
   throw InputError(fmt::format("{}: cannot be read: {}", prefix, reason));
 }

@@ -76,6 +76,8 @@ class Places final : public Origin {
   void erase(const std::string& pointer);
   // Copies from `other` the places of `pointer` and of everything below it.
   void adopt(const std::string& pointer, const Places& other);
+  // The same, but as the places of `as`.
+  void graft(const std::string& pointer, const Places& other, const std::string& as);
 
  private:
   std::map<std::string, Place> places_;

@@ -16,6 +16,7 @@
 #include "scenarios/builtin_files.h"
 #include "scenarios/changes.h"
 #include "scenarios/document.h"
+#include "scenarios/included_pipelines.h"
 #include "scenarios/oscillator_class.h"
 #include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
@@ -106,6 +107,18 @@ Source find_base(const Source& from, const std::string& base, const std::string&
     fail_to_read(prefix, "it is no regular file");
   }
   return {path, read_input_file(path, prefix, "scenario"), false};
+}
+
+[[noreturn]] void fail_in_circle(const std::string& place, const std::vector<std::string>& files,
+                                 const std::string& again) {
+  throw InputError(
+      fmt::format("{}: found a circle of bases: {} -> {}", place, fmt::join(files, " -> "), again));
+}
+
+constexpr std::size_t kMostLayers = 32;
+
+[[noreturn]] void fail_too_deep(const std::string& place) {
+  throw InputError(fmt::format("{}: found more than {} bases upon each other", place, kMostLayers));
 }
 
 // The keys of a pointer, unescaped.
@@ -235,41 +248,49 @@ void apply_override(const Override& setting, std::size_t level, json& document, 
   places.set(walked, std::move(place));
 }
 
-// One file as written, checked by itself. Those built in are checked by
-// tests/scenarios/builtin_test.cc.
-PlacedDocument read_layer(const Source& source, std::size_t level) {
+json pipelines_of(Source source, std::vector<std::string> files);
+
+// One file as written, with the pipelines that it takes from others, checked by itself. `files` led
+// here. Those built in are checked by tests/scenarios/builtin_test.cc.
+PlacedDocument read_layer(const Source& source, std::size_t level,
+                          const std::vector<std::string>& files) {
   PlacedDocument layer = parse_placed(
       source.text, {.label = source.is_builtin ? source.label : shown_text(source.label),
                     .is_builtin = source.is_builtin,
                     .level = level});
+  include_pipelines(layer, [&](const std::string& scenario, const std::string& place) {
+    Source other = find_base(source, scenario, place);
+    if (std::ranges::count(files, other.label) > 0) fail_in_circle(place, files, other.label);
+    if (files.size() >= kMostLayers) fail_too_deep(place);
+    return pipelines_of(std::move(other), files);
+  });
   if (!source.is_builtin) validate(layer.root, Completeness::kDifferences, layer.places);
   return layer;
 }
 
 // The file and its bases, the most basic one first.
-std::vector<PlacedDocument> read_layers(Source source) {
-  constexpr std::size_t kMostLayers = 32;
+std::vector<PlacedDocument> read_layers(Source source, std::vector<std::string> files = {}) {
   std::vector<PlacedDocument> layers;
-  std::vector<std::string> files;
   for (;;) {
     files.push_back(source.label);
-    layers.push_back(read_layer(source, kMostLayers - layers.size()));
+    layers.push_back(read_layer(source, kMostLayers - layers.size(), files));
     const PlacedDocument& layer = layers.back();
     if (!layer.root.contains("base")) break;
     const std::string place = layer.places.describe("/base");
     Source base = find_base(source, layer.root["base"].get<std::string>(), place);
-    if (std::find(files.begin(), files.end(), base.label) != files.end()) {
-      throw InputError(fmt::format("{}: found a circle of bases: {} -> {}", place,
-                                   fmt::join(files, " -> "), base.label));
-    }
-    if (layers.size() == kMostLayers) {
-      throw InputError(
-          fmt::format("{}: found more than {} bases upon each other", place, kMostLayers));
-    }
+    if (std::ranges::count(files, base.label) > 0) fail_in_circle(place, files, base.label);
+    if (layers.size() == kMostLayers) fail_too_deep(place);
     source = std::move(base);
   }
   std::reverse(layers.begin(), layers.end());
   return layers;
+}
+
+// Those that the scenario states or inherits; `files` led to it.
+json pipelines_of(Source source, std::vector<std::string> files) {
+  std::vector<PlacedDocument> layers = read_layers(std::move(source), std::move(files));
+  while (!layers.empty() && !layers.back().root.contains("pipelines")) layers.pop_back();
+  return layers.empty() ? json::array() : layers.back().root["pipelines"];
 }
 
 bool has_null(const json& value) {

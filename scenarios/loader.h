@@ -1,7 +1,8 @@
 // Loading a scenario: file or built-in name, inheritance, overrides, validation.
 //
 // A scenario is JSON. "base" names another scenario (built in, or a path relative to the file)
-// whose members it inherits by RFC 7386 merge; --set overrides apply last. The result is validated
+// whose members it inherits by RFC 7386 merge; its pipelines may come from another scenario
+// (included_pipelines.h); --set overrides apply last. The result is validated
 // against scenarios/schema.json and then by the checks that a schema cannot express. The first
 // mistake is thrown as an InputError; nothing is guessed.
 //

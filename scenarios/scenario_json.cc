@@ -1,22 +1,24 @@
 #include "scenarios/scenario_json.h"
 
+#include "algorithms/ports/stage.h"
+
 namespace simbench::scenarios {
 
 void to_json(nlohmann::json& out, const Pipeline& pipeline) {
-  out = {{"name", pipeline.name},
-         {"host_sync", pipeline.host_sync},
-         {"device_time", pipeline.device_time},
-         {"gathering", pipeline.gathering}};
-  if (pipeline.programs) out["host_sync"] = {{"program", *pipeline.programs}};
-  if (!pipeline.capture_alignment.empty()) {
-    out["capture_alignment"] = pipeline.capture_alignment;
+  out = {{"name", pipeline.name}};
+  for (const StageInfo& stage : kPipelineStages) {
+    const std::string& name = at_stage(pipeline, stage.id);
+    if (!stage.may_be_absent || !name.empty()) out[stage.name] = name;
   }
+  if (pipeline.programs) out["host_sync"] = {{"program", *pipeline.programs}};
 }
 void from_json(const nlohmann::json& in, Pipeline& pipeline) {
   in.at("name").get_to(pipeline.name);
-  in.at("device_time").get_to(pipeline.device_time);
-  in.at("gathering").get_to(pipeline.gathering);
-  pipeline.capture_alignment = in.value("capture_alignment", "");
+  for (const StageInfo& stage : kPipelineStages) {
+    if (stage.id == PipelineStage::kHostSync) continue;
+    at_stage(pipeline, stage.id) =
+        stage.may_be_absent ? in.value(stage.name, "") : in.at(stage.name).get<std::string>();
+  }
   const nlohmann::json& host_sync = in.at("host_sync");
   if (host_sync.is_string()) {
     host_sync.get_to(pipeline.host_sync);

@@ -33,15 +33,36 @@ const char* const kPhaseAligner =
     "google-research/libsoftwaresync, PhaseAlignController.java; Ansari et al. 2019";
 
 struct PhaseAlignSettings {
-  Nanoseconds start;
-  Nanoseconds period;  // 0: the camera's own
-  Nanoseconds goal;
-  Nanoseconds threshold;
-  Nanoseconds overhead;
-  Nanoseconds least_exposure_over_period;
-  double share_of_shift;
-  int iterations;
-  Nanoseconds settle;
+  Nanoseconds start = from_seconds(2);
+  Nanoseconds period{0};  // 0: the camera's own
+  Nanoseconds goal = from_ms(15);
+  Nanoseconds threshold = from_us(100);
+  Nanoseconds overhead = from_us(200);
+  Nanoseconds least_exposure_over_period = from_us(50);
+  double share_of_shift = 0.5;
+  int iterations = 5;
+  Nanoseconds settle = from_ms(400);
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("start_s", start, 0, 1e6, "from the cameras' start to the leader's button",
+                      kAssumption);
+    parameters.number("period_ms", period, 0, 1e5,
+                      "of the phases; 0: the camera's nominal frame length",
+                      "assumption: a configuration is of a phone model, pixel3: 33.32");
+    parameters.number("goal_phase_ms", goal, 0, 1e5, "the phase that all cameras move to",
+                      kPhaseConfig);
+    parameters.number("threshold_ms", threshold, 0, 1e5, "a phase nearer to the goal is aligned",
+                      kPhaseConfig);
+    parameters.number("overhead_ms", overhead, 0, 1e5, "of a frame beyond its exposure",
+                      kPhaseConfig);
+    parameters.number("least_exposure_over_period_us", least_exposure_over_period, -1e5, 1e5,
+                      "the least exposure of an inserted frame, less the period", kPhaseConfig);
+    parameters.number("share_of_shift", share_of_shift, 0.01, 1,
+                      "by which the inserted frame is longer", kPhaseAligner);
+    parameters.number("iterations", iterations, 1, 1e4, "most frames to insert", kPhaseAligner);
+    parameters.number("settle_ms", settle, 1, 1e6, "from one look at the phase to the next",
+                      kPhaseAligner);
+  }
 };
 
 Nanoseconds inserted_length(const PhaseAlignSettings& settings, Nanoseconds period,
@@ -85,53 +106,16 @@ Task<void> align_phase(Host& host, FrameControl& control, PhaseAlignSettings set
                            " inserted frames; more iterations or a wider threshold would help");
 }
 
-PhaseAlignSettings phase_align_settings(const Parameters& parameters) {
-  return {.start = from_seconds(parameters.number("start_s")),
-          .period = from_ms(parameters.number("period_ms")),
-          .goal = from_ms(parameters.number("goal_phase_ms")),
-          .threshold = from_ms(parameters.number("threshold_ms")),
-          .overhead = from_ms(parameters.number("overhead_ms")),
-          .least_exposure_over_period = from_us(parameters.number("least_exposure_over_period_us")),
-          .share_of_shift = parameters.number("share_of_shift"),
-          .iterations = static_cast<int>(parameters.number("iterations")),
-          .settle = from_ms(parameters.number("settle_ms"))};
-}
-
 }  // namespace
 
 std::vector<CaptureAlignmentEntry> capture_alignment_libsoftwaresync() {
-  CaptureAlignmentEntry entry;
-  entry.info.name = "libsoftwaresync";
-  entry.info.family = "libsoftwaresync";
-  entry.info.summary = "single longer frames move each camera to a goal phase, once, then free run";
-  entry.info.source = kPhaseAligner;
-  entry.info.parameters = {
-      number_parameter("start_s", 2, 0, 1e6, "from the cameras' start to the leader's button",
-                       kAssumption),
-      number_parameter("period_ms", 0, 0, 1e5,
-                       "of the phases; 0: the camera's nominal frame length",
-                       "assumption: a configuration is of a phone model, pixel3: 33.32"),
-      number_parameter("goal_phase_ms", 15, 0, 1e5, "the phase that all cameras move to",
-                       kPhaseConfig),
-      number_parameter("threshold_ms", 0.1, 0, 1e5, "a phase nearer to the goal is aligned",
-                       kPhaseConfig),
-      number_parameter("overhead_ms", 0.2, 0, 1e5, "of a frame beyond its exposure", kPhaseConfig),
-      number_parameter("least_exposure_over_period_us", 50, -1e5, 1e5,
-                       "the least exposure of an inserted frame, less the period", kPhaseConfig),
-      number_parameter("share_of_shift", 0.5, 0.01, 1, "by which the inserted frame is longer",
-                       kPhaseAligner),
-      number_parameter("iterations", 5, 1, 1e4, "most frames to insert", kPhaseAligner),
-      number_parameter("settle_ms", 400, 1, 1e6, "from one look at the phase to the next",
-                       kPhaseAligner),
-  };
-  entry.info.needs = {Need::kFrameControl};
-  entry.make = [](const Parameters& parameters) {
-    const PhaseAlignSettings settings = phase_align_settings(parameters);
-    return std::make_unique<EachCamera>([settings](Host& host, FrameControl& camera) {
-      return align_phase(host, camera, settings);
-    });
-  };
-  return {entry};
+  return {with_settings<CaptureAlignmentEntry>(
+      {.name = "libsoftwaresync",
+       .family = "libsoftwaresync",
+       .summary = "single longer frames move each camera to a goal phase, once, then free run",
+       .source = kPhaseAligner,
+       .needs = {Need::kFrameControl}},
+      PhaseAlignSettings{}, each_camera(align_phase))};
 }
 
 }  // namespace simbench

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -23,14 +24,12 @@ class Unaligned final : public CaptureAlignment {
 
 CaptureAlignmentEntry alignment_limit(const char* name, const char* summary, Steering steering,
                                       std::vector<Need> needs) {
-  CaptureAlignmentEntry entry;
-  entry.info.name = name;
-  entry.info.family = "limits";
-  entry.info.summary = summary;
-  entry.info.source = "a definition";
-  entry.info.needs = std::move(needs);
-  entry.make = [steering](const Parameters&) { return std::make_unique<Unaligned>(steering); };
-  return entry;
+  return {.info = {.name = name,
+                   .family = "limits",
+                   .summary = summary,
+                   .source = "a definition",
+                   .needs = std::move(needs)},
+          .make = [steering](const Parameters&) { return std::make_unique<Unaligned>(steering); }};
 }
 
 }  // namespace

@@ -25,6 +25,15 @@ namespace {
 
 const char* const kBasler = "docs.baslerweb.com, Synchronous Free Run";
 
+struct GridSettings {
+  Nanoseconds tolerance = from_us(100);
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("tolerance_us", tolerance, 0, 1e6, "a frame nearer to the grid is aligned",
+                      kAssumption);
+  }
+};
+
 // Frames until a move is done, of which each can make a part.
 std::int64_t frames_for(Nanoseconds move, Nanoseconds room) {
   if (room.count() <= 0) return std::numeric_limits<std::int64_t>::max();
@@ -44,7 +53,7 @@ Nanoseconds grid_correction(const SteeredCamera& camera, Nanoseconds error, Nano
   return is_later ? std::min(later, longer) : -std::min(earlier, shorter);
 }
 
-Task<void> follow_grid(Host& host, FrameControl& control, Nanoseconds tolerance) {
+Task<void> follow_grid(Host& host, FrameControl& control, GridSettings settings) {
   SteeredCamera camera(host, control);
   const Nanoseconds period = camera.limits().frame_length;
   if (std::string why = camera.unreachable(period); !why.empty()) {
@@ -55,7 +64,7 @@ Task<void> follow_grid(Host& host, FrameControl& control, Nanoseconds tolerance)
     const ExposedFrame frame = co_await camera.next_frame();
     if (!camera.is_settled(frame)) continue;
     const Nanoseconds error = phase_error(frame.exposed.time_since_epoch(), period);
-    const bool is_aligned = std::chrono::abs(error) <= tolerance;
+    const bool is_aligned = std::chrono::abs(error) <= settings.tolerance;
     camera.report(is_aligned, is_aligned ? "" : "on its way to the grid");
     if (2 * std::chrono::abs(error) <= camera.limits().granularity) continue;
     const bool is_taken = co_await camera.adjust_frame(grid_correction(camera, error, period));
@@ -66,21 +75,13 @@ Task<void> follow_grid(Host& host, FrameControl& control, Nanoseconds tolerance)
 }  // namespace
 
 std::vector<CaptureAlignmentEntry> capture_alignment_periodic_ptp() {
-  CaptureAlignmentEntry entry;
-  entry.info.name = "periodic_ptp";
-  entry.info.family = "periodic_ptp";
-  entry.info.summary = "frames on a grid of the common clock, each error taken off one frame";
-  entry.info.source = kBasler;
-  entry.info.parameters = {number_parameter("tolerance_us", 100, 0, 1e6,
-                                            "a frame nearer to the grid is aligned", kAssumption)};
-  entry.info.needs = {Need::kFrameControl};
-  entry.make = [](const Parameters& parameters) {
-    const Nanoseconds tolerance = from_us(parameters.number("tolerance_us"));
-    return std::make_unique<EachCamera>([tolerance](Host& host, FrameControl& camera) {
-      return follow_grid(host, camera, tolerance);
-    });
-  };
-  return {entry};
+  return {with_settings<CaptureAlignmentEntry>(
+      {.name = "periodic_ptp",
+       .family = "periodic_ptp",
+       .summary = "frames on a grid of the common clock, each error taken off one frame",
+       .source = kBasler,
+       .needs = {Need::kFrameControl}},
+      GridSettings{}, each_camera(follow_grid))};
 }
 
 }  // namespace simbench

@@ -42,12 +42,30 @@ namespace simbench {
 namespace {
 
 struct PhaseRateSettings {
-  std::size_t window;  // frames of the line
-  std::uint32_t learn_frames;
-  double dead_band_granules;
-  double insert_gain;
-  Nanoseconds insert_band;
-  Nanoseconds horizon;
+  std::size_t window = 60;  // frames of the line
+  std::uint32_t learn_frames = 20;
+  double dead_band_granules = 0.5;
+  double insert_gain = 2;
+  Nanoseconds insert_band = from_us(85);
+  Nanoseconds horizon = from_seconds(10);
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("window_frames", window, 2, 1e5, "frames of the line", "ours: 2 s at 30 fps");
+    parameters.number("learn_frames", learn_frames, 6, 1e5, "frames before a correction", "ours");
+    parameters.number("dead_band_granules", dead_band_granules, 0.5, 1e6,
+                      "errors below this are left, where a frame can be longer or shorter",
+                      "ours: what rounding leaves");
+    parameters.number("insert_band_ms", insert_band, 0.001, 1e3,
+                      "as near an inserted frame has to come to its goal, where there is no other "
+                      "control; what drifts out of twice this is moved again",
+                      "ours: near libsoftwaresync's threshold; the disturbed frames that a camera "
+                      "saves which stays");
+    parameters.number("insert_gain", insert_gain, 0.5, 3,
+                      "how often an inserted frame moves by its excess, until that is learned",
+                      "libsoftwaresync's PhaseAligner, which lengthens by half of the shift");
+    parameters.number("horizon_s", horizon, 0, 1e5, "time for which an inserted frame should last",
+                      "ours: a take");
+  }
 };
 
 // Errors below it are reported as aligned, if no step of the camera is larger.
@@ -346,47 +364,18 @@ class PhaseRate final : public CaptureAlignment {
   PhaseRateSettings settings_;
 };
 
-CaptureAlignmentEntry phase_rate() {
-  CaptureAlignmentEntry entry;
-  entry.info.name = "phase_rate";
-  entry.info.family = "phase_rate";
-  entry.info.summary =
-      "phase and rate of each camera from one line over its stamps: one disturbed frame, then "
-      "single granules";
-  entry.info.source = "ours";
-  entry.info.needs = {Need::kFrameControl};
-  entry.info.parameters = {
-      number_parameter("window_frames", 60, 2, 1e5, "frames of the line", "ours: 2 s at 30 fps"),
-      number_parameter("learn_frames", 20, 6, 1e5, "frames before a correction", "ours"),
-      number_parameter("dead_band_granules", 0.5, 0.5, 1e6,
-                       "errors below this are left, where a frame can be longer or shorter",
-                       "ours: what rounding leaves"),
-      number_parameter("insert_band_ms", 0.085, 0.001, 1e3,
-                       "as near an inserted frame has to come to its goal, where there is no other "
-                       "control; what drifts out of twice this is moved again",
-                       "ours: near libsoftwaresync's threshold; the disturbed frames that a camera "
-                       "saves which stays"),
-      number_parameter("insert_gain", 2, 0.5, 3,
-                       "how often an inserted frame moves by its excess, until that is learned",
-                       "libsoftwaresync's PhaseAligner, which lengthens by half of the shift"),
-      number_parameter("horizon_s", 10, 0, 1e5, "time for which an inserted frame should last",
-                       "ours: a take"),
-  };
-  entry.make = [](const Parameters& parameters) {
-    const PhaseRateSettings settings{
-        .window = static_cast<std::size_t>(parameters.number("window_frames")),
-        .learn_frames = static_cast<std::uint32_t>(parameters.number("learn_frames")),
-        .dead_band_granules = parameters.number("dead_band_granules"),
-        .insert_gain = parameters.number("insert_gain"),
-        .insert_band = from_ms(parameters.number("insert_band_ms")),
-        .horizon = from_seconds(parameters.number("horizon_s"))};
-    return std::make_unique<PhaseRate>(settings);
-  };
-  return entry;
-}
-
 }  // namespace
 
-std::vector<CaptureAlignmentEntry> capture_alignment_phase_rate() { return {phase_rate()}; }
+std::vector<CaptureAlignmentEntry> capture_alignment_phase_rate() {
+  return {with_settings<CaptureAlignmentEntry>(
+      {.name = "phase_rate",
+       .family = "phase_rate",
+       .summary =
+           "phase and rate of each camera from one line over its stamps: one disturbed frame, "
+           "then single granules",
+       .source = "ours",
+       .needs = {Need::kFrameControl}},
+      PhaseRateSettings{}, kMake<PhaseRate>)};
+}
 
 }  // namespace simbench

@@ -30,11 +30,24 @@ namespace {
 const char* const kPtpSlots = "docs.luxonis.com, PTP synchronization (RVC4)";
 
 struct PidSettings {
-  double kp = 0;
-  double ki = 0;
-  double kd = 0;
-  double limit = 0;  // part of the period
-  Nanoseconds tolerance{};
+  double kp = 0.05;
+  double ki = 0.000625;
+  double kd = 0.01;
+  double limit_percent = 1;  // of the period
+  Nanoseconds tolerance = from_us(100);
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("kp", kp, 0, 1, "change of the length for an error",
+                      "picamera2 issue 1050, a controller of frame durations");
+    parameters.number("ki", ki, 0, 1, "for the sum of the errors",
+                      "assumption: kp^2 / 4, critical damping");
+    parameters.number("kd", kd, 0, 1, "for the change of the error from frame to frame",
+                      kAssumption);
+    parameters.number("limit_percent", limit_percent, 0.001, 50,
+                      "largest change of the length of a frame", kAssumption);
+    parameters.number("tolerance_us", tolerance, 0, 1e6, "a frame nearer to its slot is aligned",
+                      kAssumption);
+  }
 };
 
 // The lengths of a camera's frames, in nanoseconds.
@@ -44,8 +57,8 @@ class FramePid {
            Nanoseconds longest)
       : settings_(settings),
         period_ns_(to_ns(period)),
-        low_ns_(std::max(-settings.limit * period_ns_, to_ns(shortest - period))),
-        high_ns_(std::min(settings.limit * period_ns_, to_ns(longest - period))) {}
+        low_ns_(std::max(-settings.limit_percent / 100 * period_ns_, to_ns(shortest - period))),
+        high_ns_(std::min(settings.limit_percent / 100 * period_ns_, to_ns(longest - period))) {}
 
   double length_ns(double error_ns) {
     const double step_ns = is_first_ ? 0 : error_ns - previous_ns_;
@@ -101,35 +114,13 @@ Task<void> regulate_rate(Host& host, FrameControl& control, PidSettings settings
 }  // namespace
 
 std::vector<CaptureAlignmentEntry> capture_alignment_pid_frame_rate() {
-  CaptureAlignmentEntry entry;
-  entry.info.name = "pid_frame_rate";
-  entry.info.family = "pid_frame_rate";
-  entry.info.summary = "a PID regulator of the frame rate locks the frames to slots of the clock";
-  entry.info.source = kPtpSlots;
-  entry.info.parameters = {
-      number_parameter("kp", 0.05, 0, 1, "change of the length for an error",
-                       "picamera2 issue 1050, a controller of frame durations"),
-      number_parameter("ki", 0.000625, 0, 1, "for the sum of the errors",
-                       "assumption: kp^2 / 4, critical damping"),
-      number_parameter("kd", 0.01, 0, 1, "for the change of the error from frame to frame",
-                       kAssumption),
-      number_parameter("limit_percent", 1, 0.001, 50, "largest change of the length of a frame",
-                       kAssumption),
-      number_parameter("tolerance_us", 100, 0, 1e6, "a frame nearer to its slot is aligned",
-                       kAssumption),
-  };
-  entry.info.needs = {Need::kFrameControl};
-  entry.make = [](const Parameters& parameters) {
-    const PidSettings settings{.kp = parameters.number("kp"),
-                               .ki = parameters.number("ki"),
-                               .kd = parameters.number("kd"),
-                               .limit = parameters.number("limit_percent") / 100,
-                               .tolerance = from_us(parameters.number("tolerance_us"))};
-    return std::make_unique<EachCamera>([settings](Host& host, FrameControl& camera) {
-      return regulate_rate(host, camera, settings);
-    });
-  };
-  return {entry};
+  return {with_settings<CaptureAlignmentEntry>(
+      {.name = "pid_frame_rate",
+       .family = "pid_frame_rate",
+       .summary = "a PID regulator of the frame rate locks the frames to slots of the clock",
+       .source = kPtpSlots,
+       .needs = {Need::kFrameControl}},
+      PidSettings{}, each_camera(regulate_rate))};
 }
 
 }  // namespace simbench

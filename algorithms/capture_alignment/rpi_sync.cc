@@ -50,9 +50,18 @@ namespace {
 const char* const kRpiSync = "raspberrypi/libcamera, src/ipa/rpi/controller/rpi/sync.cpp";
 
 struct RpiSyncSettings {
-  std::uint32_t sync_period = 0;  // frames
-  std::uint32_t ready_frame = 0;
-  Nanoseconds min_adjustment{};
+  std::uint32_t sync_period = 30;  // frames
+  std::uint32_t ready_frame = 100;
+  Nanoseconds min_adjustment = from_us(50);
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("sync_period_frames", sync_period, 1, 1e6,
+                      "from one packet of the server to the next", kRpiSync);
+    parameters.number("ready_frame", ready_frame, 1, 1e6,
+                      "of the server, from which all count as ready", kRpiSync);
+    parameters.number("min_adjustment_us", min_adjustment, 0, 1e6,
+                      "a correction below it is not made", kRpiSync);
+  }
 };
 
 struct RpiSyncPacket {
@@ -233,28 +242,14 @@ class RpiSync final : public CaptureAlignment {
 }  // namespace
 
 std::vector<CaptureAlignmentEntry> capture_alignment_rpi_sync() {
-  CaptureAlignmentEntry entry;
-  entry.info.name = "rpi_sync";
-  entry.info.family = "rpi_sync";
-  entry.info.summary =
-      "the master's camera tells the time of a frame each second, the others move to it in one";
-  entry.info.source = kRpiSync;
-  entry.info.parameters = {
-      number_parameter("sync_period_frames", 30, 1, 1e6,
-                       "from one packet of the server to the next", kRpiSync),
-      number_parameter("ready_frame", 100, 1, 1e6, "of the server, from which all count as ready",
-                       kRpiSync),
-      number_parameter("min_adjustment_us", 50, 0, 1e6, "a correction below it is not made",
-                       kRpiSync),
-  };
-  entry.info.needs = {Need::kFrameControl};
-  entry.make = [](const Parameters& parameters) {
-    return std::make_unique<RpiSync>(RpiSyncSettings{
-        .sync_period = static_cast<std::uint32_t>(parameters.number("sync_period_frames")),
-        .ready_frame = static_cast<std::uint32_t>(parameters.number("ready_frame")),
-        .min_adjustment = from_us(parameters.number("min_adjustment_us"))});
-  };
-  return {entry};
+  return {with_settings<CaptureAlignmentEntry>(
+      {.name = "rpi_sync",
+       .family = "rpi_sync",
+       .summary = "the master's camera tells the time of a frame each second, the others move to "
+                  "it in one",
+       .source = kRpiSync,
+       .needs = {Need::kFrameControl}},
+      RpiSyncSettings{}, kMake<RpiSync>)};
 }
 
 }  // namespace simbench

@@ -27,9 +27,18 @@ constexpr int kStartAttempts = 3;
 constexpr std::uint32_t kFramesAfterStart = 4;  // more than a stamp by arrivals is late
 
 struct ScheduledActionSettings {
-  Nanoseconds lead;
-  Nanoseconds repeat;  // 0: never
-  Nanoseconds moved;
+  Nanoseconds lead = from_seconds(1);
+  Nanoseconds repeat{0};  // 0: never
+  Nanoseconds moved = from_us(100);
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("lead_s", lead, 0, 1e6, "from the next whole second to the start",
+                      kAssumption);
+    parameters.number("repeat_s", repeat, 0, 1e6, "from one start to asking for the next; 0: never",
+                      kAssumption);
+    parameters.number("moved_us", moved, 0, 1e6, "a start that moves the exposures less was lost",
+                      kAssumption);
+  }
 };
 
 Task<bool> start_at_next_second(SteeredCamera& camera, Nanoseconds lead) {
@@ -76,28 +85,13 @@ Task<void> start_on_schedule(Host& host, FrameControl& control, ScheduledActionS
 }  // namespace
 
 std::vector<CaptureAlignmentEntry> capture_alignment_scheduled_action() {
-  CaptureAlignmentEntry entry;
-  entry.info.name = "scheduled_action";
-  entry.info.family = "scheduled_action";
-  entry.info.summary = "all cameras start at one time of the common clock, then run free";
-  entry.info.source = kScheduledAction;
-  entry.info.parameters = {
-      number_parameter("lead_s", 1, 0, 1e6, "from the next whole second to the start", kAssumption),
-      number_parameter("repeat_s", 0, 0, 1e6, "from one start to asking for the next; 0: never",
-                       kAssumption),
-      number_parameter("moved_us", 100, 0, 1e6, "a start that moves the exposures less was lost",
-                       kAssumption),
-  };
-  entry.info.needs = {Need::kFrameControl};
-  entry.make = [](const Parameters& parameters) {
-    const ScheduledActionSettings settings{.lead = from_seconds(parameters.number("lead_s")),
-                                           .repeat = from_seconds(parameters.number("repeat_s")),
-                                           .moved = from_us(parameters.number("moved_us"))};
-    return std::make_unique<EachCamera>([settings](Host& host, FrameControl& camera) {
-      return start_on_schedule(host, camera, settings);
-    });
-  };
-  return {entry};
+  return {with_settings<CaptureAlignmentEntry>(
+      {.name = "scheduled_action",
+       .family = "scheduled_action",
+       .summary = "all cameras start at one time of the common clock, then run free",
+       .source = kScheduledAction,
+       .needs = {Need::kFrameControl}},
+      ScheduledActionSettings{}, each_camera(start_on_schedule))};
 }
 
 }  // namespace simbench

@@ -93,6 +93,17 @@ class EachCamera final : public CaptureAlignment {
   Steer steer_;
 };
 
+// What makes such an algorithm of its settings, for with_settings() (algorithms/registry.h):
+// steer(host, camera, settings).
+template <class Settings>
+auto each_camera(Task<void> (*steer)(Host& host, FrameControl& camera, Settings settings)) {
+  return [steer](const Settings& settings) {
+    return std::make_unique<EachCamera>([steer, settings](Host& host, FrameControl& camera) {
+      return steer(host, camera, settings);
+    });
+  };
+}
+
 }  // namespace simbench
 
 #endif  // SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_STEERED_CAMERA_H_

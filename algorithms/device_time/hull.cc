@@ -106,55 +106,46 @@ std::unique_ptr<DeviceTimeEstimator> make_switching_hull(SwitchingHullSettings s
       SwitchingHull(saturate_round(settings.period_s * 1e6)), settings.max_skew_ppm);
 }
 
-std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm) {
-  return std::make_unique<OfflineHullEstimator>(max_skew_ppm);
+std::unique_ptr<DeviceTimeEstimator> make_offline_hull(OfflineHullSettings settings) {
+  return std::make_unique<OfflineHullEstimator>(settings.max_skew_ppm);
 }
 
-namespace {
-
-constexpr const char* kMaxSkewName = "max_skew_ppm";
-constexpr const char* kHullSource = "docs/reference/device_time.md section 1";
-constexpr const char* kTicSync =
-    "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
-
-AlgorithmInfo hull_info(const char* name, const char* summary, const char* source) {
-  return {.name = name,
-          .family = "hull",
-          .summary = summary,
-          .source = source,
-          .parameters = {max_skew_parameter()}};
+void bind_max_skew(ParameterBinder& parameters, double& max_skew_ppm) {
+  parameters.number("max_skew_ppm", max_skew_ppm, 1, 100'000,
+                    "limit of a line's slope: twice the fastest slew of NTP", "RFC 5905");
 }
 
-DeviceTimeEntry switching(const char* name, double period_s, const char* summary) {
-  return {.info = hull_info(name, summary, kTicSync),
-          .make = [period_s](const Parameters& parameters) {
-            return make_switching_hull(
-                {.period_s = period_s, .max_skew_ppm = parameters.number(kMaxSkewName)});
-          }};
+void WindowHullSettings::bind(ParameterBinder& parameters) {
+  bind_max_skew(parameters, max_skew_ppm);
 }
-
-}  // namespace
-
-ParameterSpec max_skew_parameter() {
-  return number_parameter(kMaxSkewName, kDefaultMaxSkewPpm, 1, 100'000,
-                          "limit of a line's slope: twice the fastest slew of NTP", "RFC 5905");
+void SwitchingHullSettings::bind(ParameterBinder& parameters) {
+  bind_max_skew(parameters, max_skew_ppm);
+}
+void OfflineHullSettings::bind(ParameterBinder& parameters) {
+  bind_max_skew(parameters, max_skew_ppm);
 }
 
 std::vector<DeviceTimeEntry> device_time_hull() {
+  const auto info = [](const char* name, const char* summary, const char* source) {
+    return AlgorithmInfo{.name = name, .family = "hull", .summary = summary, .source = source};
+  };
+  const char* const hull = "docs/reference/device_time.md section 1";
+  const char* const tic_sync =
+      "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
   return {
-      {.info = hull_info("hull_300", "lower hull of the last 300 frames", kHullSource),
-       .make =
-           [](const Parameters& parameters) {
-             return make_window_hull(
-                 {.frames = 300, .max_skew_ppm = parameters.number(kMaxSkewName)});
-           }},
-      switching("hull_switch_10s", 10, "two growing lower hulls, 10 s apart: 10 to 20 s of frames"),
-      switching("hull_switch_60s", 60, "two growing lower hulls, 60 s apart: 1 to 2 min of frames"),
-      {.info = hull_info("hull_offline", "lower hull of the whole recording", kHullSource),
-       .make =
-           [](const Parameters& parameters) {
-             return make_offline_hull(parameters.number(kMaxSkewName));
-           }},
+      with_settings<DeviceTimeEntry>(info("hull_300", "lower hull of the last 300 frames", hull),
+                                     WindowHullSettings{.frames = 300}, make_window_hull),
+      with_settings<DeviceTimeEntry>(
+          info("hull_switch_10s", "two growing lower hulls, 10 s apart: 10 to 20 s of frames",
+               tic_sync),
+          SwitchingHullSettings{.period_s = 10}, make_switching_hull),
+      with_settings<DeviceTimeEntry>(
+          info("hull_switch_60s", "two growing lower hulls, 60 s apart: 1 to 2 min of frames",
+               tic_sync),
+          SwitchingHullSettings{.period_s = 60}, make_switching_hull),
+      with_settings<DeviceTimeEntry>(
+          info("hull_offline", "lower hull of the whole recording", hull), OfflineHullSettings{},
+          make_offline_hull),
   };
 }
 

@@ -28,7 +28,7 @@
 #include <memory>
 
 #include "algorithms/device_time/device_time.h"
-#include "algorithms/parameters.h"
+#include "algorithms/parameter_binder.h"
 
 namespace simbench {
 
@@ -37,20 +37,30 @@ inline constexpr double kDefaultMaxSkewPpm = 1000;
 struct WindowHullSettings {
   std::size_t frames = 300;  // at least 1
   double max_skew_ppm = kDefaultMaxSkewPpm;
+
+  void bind(ParameterBinder& parameters);
 };
 
 struct SwitchingHullSettings {
   double period_s = 10;  // of sensor time, positive
   double max_skew_ppm = kDefaultMaxSkewPpm;
+
+  void bind(ParameterBinder& parameters);
+};
+
+struct OfflineHullSettings {
+  double max_skew_ppm = kDefaultMaxSkewPpm;
+
+  void bind(ParameterBinder& parameters);
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_window_hull(WindowHullSettings settings);
 std::unique_ptr<DeviceTimeEstimator> make_switching_hull(SwitchingHullSettings settings);
 // Must be given the recording with learn() before the first stamp(), and the same frames again.
-std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm = kDefaultMaxSkewPpm);
+std::unique_ptr<DeviceTimeEstimator> make_offline_hull(OfflineHullSettings settings = {});
 
 // The parameter max_skew_ppm of all estimators by hulls.
-ParameterSpec max_skew_parameter();
+void bind_max_skew(ParameterBinder& parameters, double& max_skew_ppm);
 
 }  // namespace simbench
 

@@ -378,59 +378,36 @@ namespace {
 
 constexpr const char* kSource = "docs/reference/device_time.md section 1";
 
-DeviceTimeEntry olson() {
-  return {.info = {.name = "olson_50ppm",
-                   .family = "olson",
-                   .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
-                   .source = "Olson, IROS 2010; docs/reference/device_time.md section 1",
-                   .parameters = {number_parameter(
-                       "alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
-                       "rate of forgetting; must exceed the skew", kSource)}},
-          .make = [](const Parameters& parameters) {
-            return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
-          }};
-}
-
-DeviceTimeEntry kalman() {
-  const KalmanSettings defaults;
-  std::vector<ParameterSpec> specs = {
-      number_parameter("initial_offset_sigma_ms", defaults.initial_offset_sigma_ms, 1e-3, 1e6,
-                       "uncertainty of the first frame's offset", kSource),
-      number_parameter("initial_skew_sigma_ppm", defaults.initial_skew_sigma_ppm, 1e-3, 1e5,
-                       "initial uncertainty of the skew", kSource),
-      number_parameter("offset_sigma_ms", defaults.offset_sigma_ms, 1e-4, 1e4,
-                       "standard deviation of one arrival", kSource),
-      number_parameter("skew_sigma_ppm", defaults.skew_sigma_ppm, 0, 1e4,
-                       "random walk of the skew, per square root of a second", kSource),
-      number_parameter("gate", defaults.gate, 0.1, 1e6,
-                       "frames further off, in standard deviations, are rejected", kSource),
-      number_parameter("rejections_to_restart", defaults.rejections_to_restart, 1, 1e6,
-                       "rejections in a row after which the filter restarts", "ours"),
-  };
-  return {
-      .info =
-          {.name = "kalman",
-           .family = "kalman",
-           .summary = "Kalman filter of offset and skew; its gate cannot lock itself out",
-           .source =
-               "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1",
-           .parameters = std::move(specs)},
-      .make = [](const Parameters& parameters) {
-        return make_kalman({.initial_offset_sigma_ms = parameters.number("initial_offset_sigma_ms"),
-                            .initial_skew_sigma_ppm = parameters.number("initial_skew_sigma_ppm"),
-                            .offset_sigma_ms = parameters.number("offset_sigma_ms"),
-                            .skew_sigma_ppm = parameters.number("skew_sigma_ppm"),
-                            .gate = parameters.number("gate"),
-                            .rejections_to_restart =
-                                static_cast<int>(parameters.number("rejections_to_restart"))});
-      }};
-}
-
 }  // namespace
+
+void OlsonSettings::bind(ParameterBinder& parameters) {
+  parameters.number("alpha_ppm", alpha_ppm, 0, 100'000, "rate of forgetting; must exceed the skew",
+                    kSource);
+}
+
+void KalmanSettings::bind(ParameterBinder& parameters) {
+  parameters.number("initial_offset_sigma_ms", initial_offset_sigma_ms, 1e-3, 1e6,
+                    "uncertainty of the first frame's offset", kSource);
+  parameters.number("initial_skew_sigma_ppm", initial_skew_sigma_ppm, 1e-3, 1e5,
+                    "initial uncertainty of the skew", kSource);
+  parameters.number("offset_sigma_ms", offset_sigma_ms, 1e-4, 1e4,
+                    "standard deviation of one arrival", kSource);
+  parameters.number("skew_sigma_ppm", skew_sigma_ppm, 0, 1e4,
+                    "random walk of the skew, per square root of a second", kSource);
+  parameters.number("gate", gate, 0.1, 1e6,
+                    "frames further off, in standard deviations, are rejected", kSource);
+  parameters.number("rejections_to_restart", rejections_to_restart, 1, 1e6,
+                    "rejections in a row after which the filter restarts", "ours");
+}
 
 std::vector<DeviceTimeEntry> device_time_offset_filters() {
   return {
-      olson(),
+      with_settings<DeviceTimeEntry>(
+          {.name = "olson_50ppm",
+           .family = "olson",
+           .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
+           .source = "Olson, IROS 2010; docs/reference/device_time.md section 1"},
+          OlsonSettings{}, make_olson),
       {.info = {.name = "minimum_1s",
                 .family = "minimum",
                 .summary = "least offset of the last second: the best of the simple ones",
@@ -441,7 +418,13 @@ std::vector<DeviceTimeEntry> device_time_offset_filters() {
                 .summary = "median of slopes over the last 300 frames, a refit every 15",
                 .source = "Sen 1968; docs/reference/device_time.md section 1"},
        .make = [](const Parameters&) { return make_theil_sen({.frames = 300}); }},
-      kalman(),
+      with_settings<DeviceTimeEntry>(
+          {.name = "kalman",
+           .family = "kalman",
+           .summary = "Kalman filter of offset and skew; its gate cannot lock itself out",
+           .source =
+               "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1"},
+          KalmanSettings{}, make_kalman),
   };
 }
 

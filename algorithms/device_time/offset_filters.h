@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "algorithms/device_time/device_time.h"
+#include "algorithms/parameter_binder.h"
 
 namespace simbench {
 
@@ -29,6 +30,8 @@ namespace simbench {
 // Source: Olson, A Passive Solution to the Sensor Synchronization Problem, IROS 2010.
 struct OlsonSettings {
   double alpha_ppm = 50;
+
+  void bind(ParameterBinder& parameters);
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_olson(OlsonSettings settings);
@@ -83,6 +86,8 @@ struct KalmanSettings {
   double skew_sigma_ppm = 2;     // random walk of the skew, per square root of a second
   double gate = 3;               // in standard deviations
   int rejections_to_restart = 10;
+
+  void bind(ParameterBinder& parameters);
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_kalman(KalmanSettings settings);

@@ -91,6 +91,8 @@ struct TwoWayPollSettings {
 
   double window_s = 20;  // of device time, positive
   double max_skew_ppm = kDefaultMaxSkewPpm;
+
+  void bind(ParameterBinder& parameters);
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settings);

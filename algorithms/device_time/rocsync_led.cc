@@ -112,19 +112,20 @@ std::unique_ptr<DeviceTimeEstimator> make_rocsync_led(RocsyncLedSettings setting
   return std::make_unique<RocsyncLed>(settings);
 }
 
+void RocsyncLedSettings::bind(ParameterBinder& parameters) {
+  parameters.number("threshold_ms", threshold_ms, 0.1, 1000,
+                    "largest residual of a reading that is used",
+                    "RocSync, video.py: one frame period");
+}
+
 std::vector<DeviceTimeEntry> device_time_rocsync_led() {
-  return {{.info = {.name = "rocsync_led",
-                    .family = "rocsync_led",
-                    .summary = "robust line through what the frames show of a clock of LEDs",
-                    .source = "Meyer et al. 2026; docs/reference/capture_alignment.md section 5",
-                    .parameters = {number_parameter("threshold_ms",
-                                                    RocsyncLedSettings{}.threshold_ms, 0.1, 1000,
-                                                    "largest residual of a reading that is used",
-                                                    "RocSync, video.py: one frame period")},
-                    .needs = {Need::kLedClock}},
-           .make = [](const Parameters& parameters) {
-             return make_rocsync_led({.threshold_ms = parameters.number("threshold_ms")});
-           }}};
+  return {with_settings<DeviceTimeEntry>(
+      {.name = "rocsync_led",
+       .family = "rocsync_led",
+       .summary = "robust line through what the frames show of a clock of LEDs",
+       .source = "Meyer et al. 2026; docs/reference/capture_alignment.md section 5",
+       .needs = {Need::kLedClock}},
+      RocsyncLedSettings{}, make_rocsync_led)};
 }
 
 }  // namespace simbench

@@ -46,6 +46,7 @@
 #include <memory>
 
 #include "algorithms/device_time/device_time.h"
+#include "algorithms/parameter_binder.h"
 
 namespace simbench {
 
@@ -53,6 +54,8 @@ struct RocsyncLedSettings {
   static constexpr std::size_t kConsensus = 256;
 
   double threshold_ms = 33.3;  // of an inlier's residual, positive
+
+  void bind(ParameterBinder& parameters);
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_rocsync_led(RocsyncLedSettings settings = {});

@@ -61,28 +61,20 @@ std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settin
   return std::make_unique<TwoWayPoll>(settings);
 }
 
-namespace {
-
-constexpr const char* kWindowName = "window_s";
-
-DeviceTimeEntry two_way_poll() {
-  return {.info = {.name = "two_way_poll",
-                   .family = "two_way_poll",
-                   .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
-                   .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
-                   .parameters = {max_skew_parameter(),
-                                  number_parameter(kWindowName, TwoWayPollSettings{}.window_s, 1,
-                                                   3600, "span of the polls that are used",
-                                                   "ours: short against wander")},
-                   .needs = {Need::kPolls}},
-          .make = [](const Parameters& parameters) {
-            return make_two_way_poll({.window_s = parameters.number(kWindowName),
-                                      .max_skew_ppm = parameters.number("max_skew_ppm")});
-          }};
+void TwoWayPollSettings::bind(ParameterBinder& parameters) {
+  bind_max_skew(parameters, max_skew_ppm);
+  parameters.number("window_s", window_s, 1, 3600, "span of the polls that are used",
+                    "ours: short against wander");
 }
 
-}  // namespace
-
-std::vector<DeviceTimeEntry> device_time_two_way_poll() { return {two_way_poll()}; }
+std::vector<DeviceTimeEntry> device_time_two_way_poll() {
+  return {with_settings<DeviceTimeEntry>(
+      {.name = "two_way_poll",
+       .family = "two_way_poll",
+       .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
+       .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
+       .needs = {Need::kPolls}},
+      TwoWayPollSettings{}, make_two_way_poll)};
+}
 
 }  // namespace simbench

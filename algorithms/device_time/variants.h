@@ -16,7 +16,8 @@
 // polls, adjustments, offline(), relative() and from_first_frame().
 //
 //   const DeviceTimeName name = parse_device_time_name("hull_300_steady_exposure_corrected");
-//   auto estimator = make_variant(name, find_device_time(name.base)->make(parameters), {});
+//   auto estimator = make_variant(name,
+//   find_algorithm<DeviceTimeEntry>(name.base)->make(parameters), {});
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
 

@@ -247,63 +247,49 @@ namespace {
 
 const char* const kRos = "ros_comm message_filters sync_policies/approximate_time.h";
 
-// `share` of a duration.
-Nanoseconds scaled(Nanoseconds duration, double share) {
-  return from_ns(static_cast<double>(duration.count()) * share);
-}
+// Options whose times count in frame periods.
+struct ApproximateTimeSettings {
+  ApproximateTimeOptions options{};
+  double lower_bound_periods = 0;
+  double max_interval_periods = 0;
+  bool is_bounded = false;  // by T_int, which is no parameter then
 
-std::vector<ParameterSpec> approximate_time_parameters(double lower_bound_periods) {
-  return {
-      number_parameter("age_penalty", 0.1, 0, 1e3,
-                       "how much narrower a later set must be, as a share of its lateness", kRos),
-      number_parameter("lower_bound_periods", lower_bound_periods, 0, 1,
-                       "least time between two frames of a source, in frame periods; 0: none",
-                       kRos),
-      number_parameter("queue", 10, 1, 1e4, "frames that may wait per source", kRos)};
-}
+  void bind(ParameterBinder& parameters) {
+    parameters.number("age_penalty", options.age_penalty, 0, 1e3,
+                      "how much narrower a later set must be, as a share of its lateness", kRos);
+    parameters.number("lower_bound_periods", lower_bound_periods, 0, 1,
+                      "least time between two frames of a source, in frame periods; 0: none", kRos);
+    parameters.number("queue", options.queue, 1, 1e4, "frames that may wait per source", kRos);
+    if (is_bounded) return;
+    parameters.number("max_interval_periods", max_interval_periods, 0, 1e3,
+                      "largest range of a set, in frame periods; 0: any", kRos);
+  }
+};
 
-ApproximateTimeOptions approximate_time_options(const Parameters& parameters,
+std::unique_ptr<Gatherer> make_approximate_time(ApproximateTimeSettings settings,
                                                 const GatheringSetup& setup) {
-  ApproximateTimeOptions options;
-  options.age_penalty = parameters.number("age_penalty");
-  options.lower_bound = scaled(setup.period, parameters.number("lower_bound_periods"));
-  options.queue = static_cast<std::uint32_t>(parameters.number("queue"));
-  return options;
+  const double period_ns = to_ns(setup.period);
+  settings.options.lower_bound = from_ns(period_ns * settings.lower_bound_periods);
+  settings.options.max_interval =
+      settings.is_bounded ? setup.interval : from_ns(period_ns * settings.max_interval_periods);
+  return make_approximate_time_gatherer(setup, settings.options);
 }
 
-GatheringEntry approximate_time() {
-  std::vector<ParameterSpec> parameters = approximate_time_parameters(0);
-  parameters.push_back(number_parameter("max_interval_periods", 0, 0, 1e3,
-                                        "largest range of a set, in frame periods; 0: any", kRos));
-  return {.info = {.name = "approximate_time",
-                   .family = "approximate_time",
-                   .summary = "the narrowest sets around a pivot, of any width (ROS)",
-                   .source = kRos,
-                   .parameters = std::move(parameters)},
-          .make = [](const Parameters& given, const GatheringSetup& setup) {
-            ApproximateTimeOptions options = approximate_time_options(given, setup);
-            options.max_interval = scaled(setup.period, given.number("max_interval_periods"));
-            return make_approximate_time_gatherer(setup, options);
-          }};
-}
-
-GatheringEntry approximate_time_bounded() {
-  return {.info = {.name = "approximate_time_bounded",
-                   .family = "approximate_time",
-                   .summary = "the same with sets up to T_int and frames half a period apart",
-                   .source = kRos,
-                   .parameters = approximate_time_parameters(0.5)},
-          .make = [](const Parameters& given, const GatheringSetup& setup) {
-            ApproximateTimeOptions options = approximate_time_options(given, setup);
-            options.max_interval = setup.interval;
-            return make_approximate_time_gatherer(setup, options);
-          }};
+GatheringEntry approximate_time(const char* name, const char* summary,
+                                const ApproximateTimeSettings& settings) {
+  return with_settings<GatheringEntry>(
+      {.name = name, .family = "approximate_time", .summary = summary, .source = kRos}, settings,
+      make_approximate_time);
 }
 
 }  // namespace
 
 std::vector<GatheringEntry> gathering_approximate_time() {
-  return {approximate_time(), approximate_time_bounded()};
+  return {approximate_time("approximate_time",
+                           "the narrowest sets around a pivot, of any width (ROS)", {}),
+          approximate_time("approximate_time_bounded",
+                           "the same with sets up to T_int and frames half a period apart",
+                           {.lower_bound_periods = 0.5, .is_bounded = true})};
 }
 
 }  // namespace simbench

@@ -157,8 +157,9 @@ std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup,
 // Complexity: O(1) per frame, O(n) per slot. Memory: n * queue_limit frames. Uses
 // GatheringSetup::period (at least a microsecond), not interval. `decay` is in [0, 1).
 // Source: practice of genlock rigs; docs/reference/gathering.md.
+inline constexpr double kPhaseDecay = 0.98;
 std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setup,
-                                                      double decay = 0.98);
+                                                      double decay = kPhaseDecay);
 
 // Gathering by the truth: a set is the frames that one trigger pulse exposed.
 //

@@ -75,22 +75,28 @@ std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup, Nanosec
 
 namespace {
 
-GatheringEntry k4a() {
-  const char* const source = "Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c";
-  return {.info = {.name = "k4a",
-                   .family = "k4a",
-                   .summary = "windows of one period around the frames of the first camera",
-                   .source = source,
-                   .parameters = {number_parameter(
-                       "delay_us", 0, -1e6, 1e6,
-                       "how much later the others are exposed than the first camera", source)}},
-          .make = [](const Parameters& parameters, const GatheringSetup& setup) {
-            return make_k4a_gatherer(setup, from_ms(parameters.number("delay_us") * 1e-3));
-          }};
-}
+const char* const kK4aSource = "Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c";
+
+struct K4aSettings {
+  Nanoseconds delay{0};
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("delay_us", delay, -1e6, 1e6,
+                      "how much later the others are exposed than the first camera", kK4aSource);
+  }
+};
 
 }  // namespace
 
-std::vector<GatheringEntry> gathering_k4a() { return {k4a()}; }
+std::vector<GatheringEntry> gathering_k4a() {
+  return {with_settings<GatheringEntry>(
+      {.name = "k4a",
+       .family = "k4a",
+       .summary = "windows of one period around the frames of the first camera",
+       .source = kK4aSource},
+      K4aSettings{}, [](const K4aSettings& settings, const GatheringSetup& setup) {
+        return make_k4a_gatherer(setup, settings.delay);
+      })};
+}
 
 }  // namespace simbench

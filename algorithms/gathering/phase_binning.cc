@@ -165,24 +165,29 @@ std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setu
 
 namespace {
 
-GatheringEntry phase_binning() {
-  const char* const source = "practice of genlock rigs; docs/reference/gathering.md";
-  return {
-      .info = {.name = "phase_binning",
-               .family = "phase_binning",
-               .summary = "the nearest point of the common period's grid, which follows the stamps",
-               .source = source,
-               .parameters = {number_parameter("decay", 0.98, 0, 0.999999,
-                                               "weight of a frame in the phase, against its "
-                                               "successor's",
-                                               source)}},
-      .make = [](const Parameters& parameters, const GatheringSetup& setup) {
-        return make_phase_binning_gatherer(setup, parameters.number("decay"));
-      }};
-}
+const char* const kGenlockPractice = "practice of genlock rigs; docs/reference/gathering.md";
+
+struct PhaseBinningSettings {
+  double decay = kPhaseDecay;
+
+  void bind(ParameterBinder& parameters) {
+    parameters.number("decay", decay, 0, 0.999999,
+                      "weight of a frame in the phase, against its successor's", kGenlockPractice);
+  }
+};
 
 }  // namespace
 
-std::vector<GatheringEntry> gathering_phase_binning() { return {phase_binning()}; }
+std::vector<GatheringEntry> gathering_phase_binning() {
+  return {with_settings<GatheringEntry>(
+      {.name = "phase_binning",
+       .family = "phase_binning",
+       .summary = "the nearest point of the common period's grid, which follows the stamps",
+       .source = kGenlockPractice},
+      PhaseBinningSettings{},
+      [](const PhaseBinningSettings& settings, const GatheringSetup& setup) {
+        return make_phase_binning_gatherer(setup, settings.decay);
+      })};
+}
 
 }  // namespace simbench

@@ -25,9 +25,8 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
 
 #include <algorithm>
-#include <vector>
 
-#include "algorithms/parameters.h"
+#include "algorithms/parameter_binder.h"
 #include "algorithms/ports/host.h"
 #include "algorithms/ports/time.h"
 
@@ -63,6 +62,8 @@ struct SteeringSettings {
   Nanoseconds step_threshold = from_ms(5);
   double max_slew_ppm = 500;
   Nanoseconds settle = from_ms(1000);
+
+  void bind(ParameterBinder& parameters);
 };
 
 class SteeredClock {
@@ -125,10 +126,6 @@ class SteeredClock {
   // From the beginning of a set call to the instant at which it takes effect.
   Nanoseconds set_delay_{0};
 };
-
-// The parameters that every algorithm with a SteeredClock declares.
-void append_steering_parameters(std::vector<ParameterSpec>& parameters);
-SteeringSettings steering_settings(const Parameters& parameters);
 
 }  // namespace simbench
 

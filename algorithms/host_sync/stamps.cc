@@ -45,13 +45,16 @@ std::optional<std::int64_t> MessageStamps::arrival(const ReceivedMessage& messag
   return nanoseconds_of(*message.received_hardware);
 }
 
-ParameterSpec software_stamps_parameter() {
-  return choice_parameter("stamps", {"kernel", "program"},
-                          "who stamps: the kernel, or the program after its send call", "linuxptp");
+void bind_software_stamps(ParameterBinder& parameters, StampSource& source) {
+  if (source == StampSource::kCard) return;
+  parameters.choice("stamps", source,
+                    {{"kernel", StampSource::kKernel}, {"program", StampSource::kProgram}},
+                    "who stamps: the kernel, or the program after its send call", "linuxptp");
 }
 
-StampSource software_stamps(const Parameters& parameters) {
-  return parameters.text("stamps") == "kernel" ? StampSource::kKernel : StampSource::kProgram;
+std::vector<Need> needs_of(StampSource source) {
+  if (source == StampSource::kCard) return {Need::kHardwareStamps};
+  return {};
 }
 
 }  // namespace simbench

@@ -19,9 +19,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "algorithms/parameters.h"
+#include "algorithms/parameter_binder.h"
 #include "algorithms/ports/host.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 
@@ -54,9 +56,11 @@ class MessageStamps {
   int unstamped_ = 0;  // departures since the beginning; negative once one was stamped
 };
 
-// "stamps": those of the kernel, or the program's where that is asked for.
-ParameterSpec software_stamps_parameter();
-StampSource software_stamps(const Parameters& parameters);
+// The parameter "stamps" of a protocol with software stamps: those of the kernel, or the program's
+// where that is asked for. One with the card's has no choice.
+void bind_software_stamps(ParameterBinder& parameters, StampSource& source);
+// What an algorithm with such stamps needs of the world.
+std::vector<Need> needs_of(StampSource source);
 
 }  // namespace simbench
 

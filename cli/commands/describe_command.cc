@@ -134,13 +134,11 @@ struct Described {
 // its variants.
 std::vector<Described> algorithms_called(const std::string& name) {
   std::vector<Described> all;
-  const auto add = [&all](const char* stage, const auto& entries) {
-    for (const auto& entry : entries) all.push_back({stage, &entry.info});
-  };
-  add("host_sync", host_sync_algorithms());
-  add("capture_alignment", capture_alignment_algorithms());
-  add("device_time", device_time_algorithms());
-  add("gathering", gathering_algorithms());
+  for (const StageInfo& stage : kPipelineStages) {
+    for (const AlgorithmInfo* const info : algorithms_of(stage.id)) {
+      all.push_back({stage.name, info});
+    }
+  }
   const auto chosen = [&all](const auto& is_meant) {
     std::vector<Described> found;
     std::ranges::copy_if(all, std::back_inserter(found), is_meant);
@@ -151,8 +149,9 @@ std::vector<Described> algorithms_called(const std::string& name) {
   found = chosen([&](const Described& d) { return d.info->family == name; });
   if (!found.empty()) return found;
   const std::string base = parse_device_time_name(name).base;
-  if (const DeviceTimeEntry* entry = find_device_time(base)) return {{"device_time", &entry->info}};
-  return {};
+  const AlgorithmInfo* const info = find_algorithm(PipelineStage::kDeviceTime, base);
+  if (info == nullptr) return {};
+  return {{name_of(PipelineStage::kDeviceTime), info}};
 }
 
 ordered_json value_json(const ParameterValue& value) {
@@ -237,10 +236,9 @@ int describe(const DescribeOptions& options) {
   std::vector<std::string> known;
   known.reserve(builtin.size());
   for (const scenarios::BuiltinScenario& each : builtin) known.push_back(each.name);
-  for (const auto& entry : host_sync_algorithms()) known.push_back(entry.info.name);
-  for (const auto& entry : capture_alignment_algorithms()) known.push_back(entry.info.name);
-  for (const auto& entry : device_time_algorithms()) known.push_back(entry.info.name);
-  for (const auto& entry : gathering_algorithms()) known.push_back(entry.info.name);
+  for (const StageInfo& stage : kPipelineStages) {
+    for (const AlgorithmInfo* const info : algorithms_of(stage.id)) known.push_back(info->name);
+  }
   const std::vector<std::string> similar = scenarios::nearest(options.what, known);
   throw InputError(
       fmt::format("found \"{}\", {} (`simbench list` names scenarios and algorithms)",

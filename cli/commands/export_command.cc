@@ -78,9 +78,9 @@ int run_export(const ExportOptions& options) {
   std::optional<reports::OutputFile> file;
   if (!options.output.empty()) file.emplace(options.output);
   const DeviceTimeEntry& device_time =
-      chosen_entry(device_time_algorithms(), "--device-time", options.device_time);
+      chosen_entry(algorithms<DeviceTimeEntry>(), "--device-time", options.device_time);
   const GatheringEntry& gathering =
-      chosen_entry(gathering_algorithms(), "--gathering", options.gathering);
+      chosen_entry(algorithms<GatheringEntry>(), "--gathering", options.gathering);
   const auto rig = read_inputs(options.files, options.inputs);
   if (!rig) return kInterrupted;
   const std::string kind = chosen_stream(rig->streams, options.stream);

@@ -62,17 +62,13 @@ std::string scenarios_text() {
 // The same for scripts: one name a line.
 std::string bare_names(const ListOptions& options) {
   std::vector<std::string> names;
-  const auto add_algorithms = [&names](const auto& entries) {
-    for (const auto& entry : entries) names.push_back(entry.info.name);
-  };
   if (options.what.empty() || options.what == "scenarios") {
     for (const auto& scenario : scenarios::builtin_scenarios()) names.push_back(scenario.name);
   }
   if (options.what.empty() || options.what == "algorithms") {
-    add_algorithms(host_sync_algorithms());
-    add_algorithms(capture_alignment_algorithms());
-    add_algorithms(device_time_algorithms());
-    add_algorithms(gathering_algorithms());
+    for (const StageInfo& stage : kPipelineStages) {
+      for (const AlgorithmInfo* const info : algorithms_of(stage.id)) names.push_back(info->name);
+    }
   }
   if (options.what == "pipelines") {
     for (const auto& pipeline : scenarios::load_scenario(options.scenario).pipelines) {
@@ -99,10 +95,11 @@ std::string bare_names(const ListOptions& options) {
   return fmt::format("{}\n", fmt::join(names, "\n"));
 }
 
-template <class Entries>
-std::string names_text(const char* stage, const Entries& entries) {
-  Table table({{stage, Align::kLeft}, {"what it is", Align::kLeft}});
-  for (const auto& entry : entries) table.add({entry.info.name, entry.info.summary});
+std::string names_text(const StageInfo& stage) {
+  Table table({{stage.name, Align::kLeft}, {"what it is", Align::kLeft}});
+  for (const AlgorithmInfo* const info : algorithms_of(stage.id)) {
+    table.add({info->name, info->summary});
+  }
   return plain(table);
 }
 
@@ -117,28 +114,31 @@ std::string algorithm_text(const AlgorithmInfo& info) {
   return text;
 }
 
-template <class Entries>
-std::string details_text(const char* stage, const Entries& entries) {
-  std::string text = fmt::format("== {}\n", stage);
-  for (const auto& entry : entries) text += algorithm_text(entry.info);
+std::string details_text(const StageInfo& stage) {
+  std::string text = fmt::format("== {}\n", stage.name);
+  for (const AlgorithmInfo* const info : algorithms_of(stage.id)) text += algorithm_text(*info);
+  return text;
+}
+
+// The text of each stage, with the suffixes of device times below theirs.
+std::string stages_text(std::string (*text_of)(const StageInfo&)) {
+  std::string text;
+  for (const StageInfo& stage : kPipelineStages) {
+    text += (text.empty() ? "" : "\n") + text_of(stage);
+    if (stage.id == PipelineStage::kDeviceTime) text += kVariants;
+  }
   return text;
 }
 
 std::string pipelines_text(const std::string& scenario) {
   const std::vector<scenarios::Pipeline> pipelines = scenarios::load_scenario(scenario).pipelines;
-  const bool is_steered = std::ranges::any_of(
-      pipelines, [](const auto& pipeline) { return !pipeline.capture_alignment.empty(); });
   std::vector<Field<scenarios::Pipeline>> fields = {
-      {{"pipeline", Align::kLeft}, [](const auto& pipeline) { return pipeline.name; }},
-      {{"host_sync", Align::kLeft}, [](const auto& pipeline) { return pipeline.host_sync; }},
-      {{"device_time", Align::kLeft}, [](const auto& pipeline) { return pipeline.device_time; }},
-      {{"gathering", Align::kLeft}, [](const auto& pipeline) { return pipeline.gathering; }}};
-  if (is_steered) {
-    fields.insert(fields.begin() + 2,
-                  {{"capture_alignment", Align::kLeft}, [](const auto& pipeline) {
-                     const std::string& name = pipeline.capture_alignment;
-                     return name.empty() ? std::string("-") : name;
-                   }});
+      {{"pipeline", Align::kLeft}, [](const auto& pipeline) { return pipeline.name; }}};
+  for (const StageInfo& stage : present_stages(pipelines)) {
+    fields.push_back({{stage.name, Align::kLeft}, [id = stage.id](const auto& pipeline) {
+                        const std::string& name = at_stage(pipeline, id);
+                        return name.empty() ? std::string("-") : name;
+                      }});
   }
   return plain(reports::table_of(fields, pipelines));
 }
@@ -275,16 +275,8 @@ std::string listing(const ListOptions& options) {
   if (options.what == "pipelines") return pipelines_text(options.scenario);
   if (options.what == "studies") return study_list();
   if (options.what == "figures") return figure_list();
-  if (options.what == "algorithms") {
-    return details_text("host_sync", host_sync_algorithms()) + "\n" +
-           details_text("capture_alignment", capture_alignment_algorithms()) + "\n" +
-           details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
-           details_text("gathering", gathering_algorithms());
-  }
-  return scenarios_text() + "\n" + names_text("host_sync", host_sync_algorithms()) + "\n" +
-         names_text("capture_alignment", capture_alignment_algorithms()) + "\n" +
-         names_text("device_time", device_time_algorithms()) + kVariants + "\n" +
-         names_text("gathering", gathering_algorithms());
+  if (options.what == "algorithms") return stages_text(details_text);
+  return scenarios_text() + "\n" + stages_text(names_text);
 }
 
 }  // namespace

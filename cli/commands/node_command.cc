@@ -11,6 +11,8 @@
 #include <memory>
 #include <utility>
 
+#include "algorithms/ports/capture_alignment.h"
+#include "algorithms/ports/host_sync.h"
 #include "app/program_pipelines.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
@@ -131,8 +133,8 @@ std::unique_ptr<HostSync> make_host_sync(const evaluation::PipelineChoice& choic
         "on real hosts start them yourself, with host_sync \"free_running\"",
         pipeline));
   }
-  check_has(pipeline, "host_sync", choice.host_sync.info);
-  return choice.host_sync.make(choice.host_sync_parameters);
+  check_has(pipeline, "host_sync", choice.host_sync.info());
+  return choice.host_sync.make();
 }
 
 hardware::NodePipeline make_pipeline(const scenarios::Scenario& scenario,
@@ -141,8 +143,8 @@ hardware::NodePipeline make_pipeline(const scenarios::Scenario& scenario,
       evaluation::choose_pipelines(scenario, {pipeline}).front();
   hardware::NodePipeline made{.host_sync = make_host_sync(choice, pipeline, options)};
   if (choice.is_steered()) {
-    check_has(pipeline, "capture_alignment", choice.capture_alignment.info);
-    made.capture_alignment = choice.capture_alignment.make(choice.capture_alignment_parameters);
+    check_has(pipeline, "capture_alignment", choice.capture_alignment.info());
+    made.capture_alignment = choice.capture_alignment.make();
   }
   return made;
 }

@@ -109,7 +109,7 @@ int record(RecordOptions options) {
       {.unit = "capture",
        .total = wanted,
        .kept = options.output + " holds what was recorded",
-       .waits_for_end = is_hardware(options.backend)});
+       .waits_for_end = true});  // the manifest says how the recording ended
   print_warnings(made.warnings);
   if (!finished) return kInterrupted;
   if (made.recorded == 0) {

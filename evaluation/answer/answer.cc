@@ -5,6 +5,7 @@
 #include <string>
 
 #include "algorithms/device_time/variants.h"
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "evaluation/run/leaderboard.h"
 
@@ -62,8 +63,8 @@ void compare_with_best(const std::vector<const Row*>& rows, Answer& answer) {
 }
 
 bool differs_in_host_sync_alone(const Row& row, const Row& best) {
-  return is_oracle(find_host_sync(row.host_sync)) && row.device_time == best.device_time &&
-         row.gathering == best.gathering;
+  return is_oracle(find_algorithm<HostSyncEntry>(row.host_sync)) &&
+         row.device_time == best.device_time && row.gathering == best.gathering;
 }
 
 void find_limit(const std::vector<const Row*>& limits, Answer& answer) {
@@ -93,10 +94,10 @@ RankedBy ranked_by(scenarios::TableKind table) {
 
 RowStanding standing_of(const Row& row) {
   const DeviceTimeName device_time = parse_device_time_name(row.device_time);
-  const DeviceTimeEntry* const entry = find_device_time(device_time.base);
-  if (is_oracle(find_host_sync(row.host_sync)) || needs_truth(entry) ||
-      needs_truth(find_capture_alignment(row.capture_alignment)) ||
-      needs_truth(find_gathering(row.gathering))) {
+  const DeviceTimeEntry* const entry = find_algorithm<DeviceTimeEntry>(device_time.base);
+  if (is_oracle(find_algorithm<HostSyncEntry>(row.host_sync)) || needs_truth(entry) ||
+      needs_truth(find_algorithm<CaptureAlignmentEntry>(row.capture_alignment)) ||
+      needs_truth(find_algorithm<GatheringEntry>(row.gathering))) {
     return RowStanding::kLimit;
   }
   const bool is_relative =
@@ -109,7 +110,8 @@ RowStanding standing_by(const Row& row, RankedBy ranked_by) {
     return RowStanding::kReference;
   }
   if (ranked_by != RankedBy::kClockSpread) return standing_of(row);
-  return is_oracle(find_host_sync(row.host_sync)) ? RowStanding::kLimit : RowStanding::kRunnable;
+  return is_oracle(find_algorithm<HostSyncEntry>(row.host_sync)) ? RowStanding::kLimit
+                                                                 : RowStanding::kRunnable;
 }
 
 const char* standing_name(RowStanding standing) {

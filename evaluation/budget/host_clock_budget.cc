@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "algorithms/ports/host_sync.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
@@ -22,10 +23,10 @@ std::string undivided(const Scenario& scenario, const PipelineChoice& choice) {
   if (!choice.problem.empty()) return choice.problem;
   if (scenario.hosts.count == 1) return "there is one host, whose clock is the reference";
   const std::string& name = choice.pipeline.host_sync;
-  if (std::ranges::count(choice.host_sync.info.needs, Need::kFrames) > 0) {
+  if (std::ranges::count(choice.host_sync.info().needs, Need::kFrames) > 0) {
     return fmt::format("{} looks at frames, whose way over USB is no message's", name);
   }
-  if (choice.host_sync.make(choice.host_sync_parameters)->is_idle()) {
+  if (choice.host_sync.make()->is_idle()) {
     return fmt::format("{} sends nothing and sets no clock", name);
   }
   return "";

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/ports/host_sync.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/named_job.h"
 #include "evaluation/run/pipeline_choice.h"
@@ -24,7 +25,7 @@ constexpr std::uint64_t kFewestReadings = 4;
 
 // What the host_sync needs that hosts without cameras do not have; null if nothing.
 const char* lacking_world(const PipelineChoice& choice) {
-  for (const Need need : choice.host_sync.info.needs) {
+  for (const Need need : choice.host_sync.info().needs) {
     if (need == Need::kFrames) return "the frames of cameras";
     if (need == Need::kTriggerLine) return "the trigger's pulses";
   }
@@ -132,7 +133,7 @@ class ClockEvaluation {
   }
 
   Scored score_of(const PipelineChoice& choice, std::uint64_t seed, ClockSource& source) const {
-    const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+    const std::unique_ptr<HostSync> host_sync = choice.host_sync.make();
     const ClockSpan span = span_of(scenario_, options_);
     ClockScorer scorer(span);
     const ClockCost cost = source.run({.seed = seed,

@@ -1,8 +1,8 @@
 // The sets of frames that a gatherer finds in a recording, for who wants to take them out of it.
 //
 //   const GatheredSets found = gathered_sets(reader.take(), "depth",
-//                                            *find_device_time("hull_offline"),
-//                                            *find_gathering("yoon2021"));
+//                                            *find_algorithm<DeviceTimeEntry>("hull_offline"),
+//                                            *find_algorithm<GatheringEntry>("yoon2021"));
 //   for (const GatheredFrame& frame : found.sets[0].frames) use(frame.stream, frame.frame);
 //
 // Errors: std::invalid_argument for an algorithm that needs polls or the truth. Complexity: that of

@@ -95,7 +95,7 @@ RigRow rig_row(const std::string& device_time, const RigFrames& rig, const AllSt
   row.device_time = device_time;
   row.amd_ms = score.amd_ms();
   row.rmdv_ms = score.rmdv_ms();
-  for (const GatheringEntry& entry : gathering_algorithms()) {
+  for (const GatheringEntry& entry : algorithms<GatheringEntry>()) {
     if (std::ranges::count(entry.info.needs, Need::kTruth) > 0) continue;
     row.gatherings.push_back(replay_gatherer(entry, rig, stamps));
   }
@@ -226,7 +226,7 @@ bool needs_polls(const DeviceTimeEntry& entry) {
 // not name, or a clock of LEDs that no file of stamps shows, has none.
 std::vector<const DeviceTimeEntry*> replayed_estimators() {
   std::vector<const DeviceTimeEntry*> entries;
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     const bool lacks = std::ranges::any_of(entry.info.needs, [](Need need) {
       return need == Need::kHostStamps || need == Need::kLedClock;
     });

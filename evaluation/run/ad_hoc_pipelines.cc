@@ -7,6 +7,7 @@
 #include <boost/algorithm/string/split.hpp>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/ports/stage.h"
 #include "algorithms/registry.h"
 #include "scenarios/document.h"
 
@@ -27,29 +28,31 @@ std::vector<std::string> stages_of(const std::string& name) {
 
 bool is_ad_hoc(const std::string& name, AdHoc allowed) {
   if (name.find(kBetween) != std::string::npos) return true;
-  return allowed == AdHoc::kHostSyncToo && find_host_sync(name) != nullptr;
+  return allowed == AdHoc::kHostSyncToo && find_algorithm<HostSyncEntry>(name) != nullptr;
 }
 
 Override appended(const std::string& name, const Pipeline& first, AdHoc allowed) {
   const std::string label = "--pipelines " + scenarios::shown_text(name);
   const std::vector<std::string> parts = stages_of(name);
   const bool has_empty = std::ranges::count(parts, "") > 0;
-  if (parts.size() == 2 || parts.size() > 4 || has_empty) {
+  if (parts.size() == 2 || parts.size() > kPipelineStages.size() || has_empty) {
     throw InputError(fmt::format(
-        "{}: found {}, allowed: {}host_sync[+capture_alignment]+device_time+gathering (`simbench "
-        "list` names them)",
-        label, has_empty ? "an empty part" : fmt::format("{} parts", parts.size()),
-        allowed == AdHoc::kHostSyncToo ? "host_sync or " : ""));
+        "{}: found {}, allowed: {}{} (`simbench list` names them)", label,
+        has_empty ? "an empty part" : fmt::format("{} parts", parts.size()),
+        allowed == AdHoc::kHostSyncToo ? "host_sync or " : "", stages_formula(kPipelineStages)));
   }
-  const bool is_alone = parts.size() == 1;
-  nlohmann::json pipeline = {
-      {"name", name},
-      {"host_sync", parts.front()},
-      {"device_time", is_alone ? first.device_time : parts[parts.size() - 2]},
-      {"gathering", is_alone ? first.gathering : parts.back()}};
-  if (parts.size() == 4) pipeline["capture_alignment"] = parts[1];
-  if (is_alone && !first.capture_alignment.empty()) {
-    pipeline["capture_alignment"] = first.capture_alignment;
+  Pipeline stated = first;
+  auto part = parts.begin();
+  for (const StageInfo& stage : kPipelineStages) {
+    if (part == parts.end()) break;
+    const bool is_left_out =
+        stage.may_be_absent && parts.size() > 1 && parts.size() < kPipelineStages.size();
+    at_stage(stated, stage.id) = is_left_out ? "" : *part++;
+  }
+  nlohmann::json pipeline = {{"name", name}};
+  for (const StageInfo& stage : kPipelineStages) {
+    const std::string& algorithm = at_stage(stated, stage.id);
+    if (!algorithm.empty()) pipeline[stage.name] = algorithm;
   }
   return {"/pipelines/-", pipeline.dump(), label};
 }

@@ -12,16 +12,13 @@ namespace simbench::evaluation {
 namespace {
 
 bool meets_load(const scenarios::Scenario& scenario, const PipelineChoice& choice) {
-  return scenario.draws_load() && !choice.host_sync.make(choice.host_sync_parameters)->is_idle();
+  return scenario.draws_load() && !choice.host_sync.make()->is_idle();
 }
 
 bool have_same_capture(const scenarios::Scenario& scenario, const PipelineChoice& a,
                        const PipelineChoice& b) {
   if (a.pipeline.programs || b.pipeline.programs) return false;
-  return a.host_sync.info.name == b.host_sync.info.name &&
-         a.host_sync_parameters.all() == b.host_sync_parameters.all() &&
-         a.pipeline.capture_alignment == b.pipeline.capture_alignment &&
-         a.capture_alignment_parameters.all() == b.capture_alignment_parameters.all() &&
+  return a.host_sync.is_same(b.host_sync) && a.capture_alignment.is_same(b.capture_alignment) &&
          (a.pipeline.name == b.pipeline.name || !meets_load(scenario, a));
 }
 

@@ -25,8 +25,7 @@ namespace {
 using scenarios::Scenario;
 
 bool is_offline(const PipelineChoice& choice) {
-  return choice.device_time.make &&
-         choice.device_time.make(choice.device_time_parameters)->offline();
+  return choice.device_time.can_be_made() && choice.device_time.make()->offline();
 }
 
 // The sigma of the links' asymmetry where it is drawn for each of them alone, else 0.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/ports/assert.h"
+#include "algorithms/ports/stage.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -46,8 +47,10 @@ void sort_by_recall(std::vector<Rank>& ranks) {
 bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
   const Row& first = *ranks.front().row;
   const auto same_stamps = [&first](const Rank& rank) {
-    return rank.row->host_sync == first.host_sync && rank.row->device_time == first.device_time &&
-           rank.row->capture_alignment == first.capture_alignment;
+    return std::ranges::all_of(kPipelineStages, [&](const StageInfo& stage) {
+      return stage.id == PipelineStage::kGathering ||
+             at_stage(*rank.row, stage.id) == at_stage(first, stage.id);
+    });
   };
   const auto other_gathering = [&first](const Rank& rank) {
     return rank.row->gathering != first.gathering;

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "algorithms/parameters.h"
+#include "algorithms/ports/capture_alignment.h"
+#include "algorithms/ports/host_sync.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/metrics.h"
 #include "scenarios/calibration.h"
@@ -33,17 +35,11 @@ std::string unknown(const std::string& name, const std::vector<std::string>& kno
                      fmt::join(known, ", "));
 }
 
-template <class Entry>
-void append_infos(const std::vector<Entry>& entries, std::vector<const AlgorithmInfo*>& infos) {
-  for (const Entry& entry : entries) infos.push_back(&entry.info);
-}
-
 std::vector<const AlgorithmInfo*> all_algorithms() {
   std::vector<const AlgorithmInfo*> infos;
-  append_infos(host_sync_algorithms(), infos);
-  append_infos(capture_alignment_algorithms(), infos);
-  append_infos(device_time_algorithms(), infos);
-  append_infos(gathering_algorithms(), infos);
+  for (const StageInfo& stage : kPipelineStages) {
+    std::ranges::copy(algorithms_of(stage.id), std::back_inserter(infos));
+  }
   return infos;
 }
 
@@ -133,20 +129,19 @@ void check_all_parameters(const Scenario& scenario) {
 
 // Makes each algorithm once: one of a user's own may refuse what its declaration allows.
 void check_can_be_made(const Scenario& scenario, const PipelineChoice& choice) {
-  const AlgorithmInfo* info = &choice.host_sync.info;
-  try {
-    choice.host_sync.make(choice.host_sync_parameters);
-    info = &choice.capture_alignment.info;
-    if (choice.is_steered()) choice.capture_alignment.make(choice.capture_alignment_parameters);
-    info = &choice.device_time.info;
-    if (choice.device_time.make) choice.device_time.make(choice.device_time_parameters);
-    info = &choice.gathering.info;
-    const Nanoseconds period = from_ms(1e3 / scenario.trigger.rate_hz);
-    choice.gathering.make(choice.gathering_parameters,
-                          {.sources = 1, .period = period, .interval = period});
-  } catch (const ParameterError& error) {
-    fail_at_parameter(scenario, *info, error);
-  }
+  const auto try_to_make = [&scenario](const auto& chosen, const auto&... setup) {
+    if (!chosen.can_be_made()) return;
+    try {
+      chosen.make(setup...);
+    } catch (const ParameterError& error) {
+      fail_at_parameter(scenario, chosen.info(), error);
+    }
+  };
+  const Nanoseconds period = from_ms(1e3 / scenario.trigger.rate_hz);
+  try_to_make(choice.host_sync);
+  try_to_make(choice.capture_alignment);
+  try_to_make(choice.device_time);
+  try_to_make(choice.gathering, GatheringSetup{.sources = 1, .period = period, .interval = period});
 }
 
 // What the scenario lacks of an algorithm's need; empty if nothing.
@@ -187,12 +182,16 @@ std::string lacking(const Scenario& scenario, Need need) {
   return "";
 }
 
-void check_needs(const Scenario& scenario, std::size_t pipeline, const char* stage,
+std::string stage_pointer(std::size_t pipeline, PipelineStage stage) {
+  return fmt::format("/pipelines/{}/{}", pipeline, name_of(stage));
+}
+
+void check_needs(const Scenario& scenario, std::size_t pipeline, PipelineStage stage,
                  const AlgorithmInfo& info) {
   for (const Need need : info.needs) {
     const std::string missing = lacking(scenario, need);
     if (missing.empty()) continue;
-    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/{}", pipeline, stage),
+    scenarios::fail_at(scenario, stage_pointer(pipeline, stage),
                        fmt::format("found \"{}\", which needs {}", info.name, missing));
   }
 }
@@ -221,15 +220,11 @@ CalibratedDelays delays_of(const Scenario& scenario, const PipelineChoice& choic
 }
 
 template <class Entry>
-const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const char* stage,
-                          const std::string& name, const std::vector<Entry>& entries) {
+const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const std::string& name) {
+  if (const Entry* const entry = find_algorithm<Entry>(name)) return *entry;
   std::vector<std::string> known;
-  for (const Entry& entry : entries) {
-    if (entry.info.name == name) return entry;
-    known.push_back(entry.info.name);
-  }
-  scenarios::fail_at(scenario, fmt::format("/pipelines/{}/{}", pipeline, stage),
-                     unknown(name, known));
+  for (const Entry& entry : algorithms<Entry>()) known.push_back(entry.info.name);
+  scenarios::fail_at(scenario, stage_pointer(pipeline, Entry::kStage), unknown(name, known));
 }
 
 ProgramMaker& program_maker() {
@@ -240,53 +235,48 @@ ProgramMaker& program_maker() {
 ProgramEntry host_sync_of(const Scenario& scenario, std::size_t index) {
   const scenarios::Pipeline& pipeline = scenario.pipelines[index];
   if (!pipeline.programs) {
-    return {algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms())};
+    return {algorithm_at<HostSyncEntry>(scenario, index, pipeline.host_sync)};
   }
   if (!program_maker()) {
-    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/host_sync", index),
+    scenarios::fail_at(scenario, stage_pointer(index, PipelineStage::kHostSync),
                        "found programs, allowed here: an algorithm");
   }
   return program_maker()(scenario, pipeline);
 }
 
-CaptureAlignmentEntry capture_alignment_of(const Scenario& scenario, std::size_t index) {
-  const std::string& name = scenario.pipelines[index].capture_alignment;
+// A stage that is absent has an entry without a name.
+template <class Entry>
+Entry chosen_at(const Scenario& scenario, std::size_t index, const std::string& name) {
   if (name.empty()) return {};
-  CaptureAlignmentEntry entry =
-      algorithm_at(scenario, index, "capture_alignment", name, capture_alignment_algorithms());
-  check_needs(scenario, index, "capture_alignment", entry.info);
-  return entry;
+  return algorithm_at<Entry>(scenario, index, name);
 }
 
 PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   const scenarios::Pipeline& pipeline = scenario.pipelines[index];
   const auto [host_sync, problem] = host_sync_of(scenario, index);
-  const CaptureAlignmentEntry alignment = capture_alignment_of(scenario, index);
+  const auto alignment =
+      chosen_at<CaptureAlignmentEntry>(scenario, index, pipeline.capture_alignment);
+  check_needs(scenario, index, PipelineStage::kCaptureAlignment, alignment.info);
   const DeviceTimeName variants = parse_device_time_name(pipeline.device_time);
-  const DeviceTimeEntry& device_time =
-      algorithm_at(scenario, index, "device_time", variants.base, device_time_algorithms());
-  const GatheringEntry& gathering =
-      algorithm_at(scenario, index, "gathering", pipeline.gathering, gathering_algorithms());
-  check_needs(scenario, index, "host_sync", host_sync.info);
-  check_needs(scenario, index, "device_time", device_time.info);
-  check_needs(scenario, index, "gathering", gathering.info);
+  const auto& device_time = algorithm_at<DeviceTimeEntry>(scenario, index, variants.base);
+  const auto& gathering = algorithm_at<GatheringEntry>(scenario, index, pipeline.gathering);
+  check_needs(scenario, index, PipelineStage::kHostSync, host_sync.info);
+  check_needs(scenario, index, PipelineStage::kDeviceTime, device_time.info);
+  check_needs(scenario, index, PipelineStage::kGathering, gathering.info);
   if (!device_time.make && variants.base != pipeline.device_time) {
-    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/device_time", index),
+    scenarios::fail_at(scenario, stage_pointer(index, PipelineStage::kDeviceTime),
                        fmt::format("found \"{}\", but \"{}\" has no variants", pipeline.device_time,
                                    variants.base));
   }
-  PipelineChoice choice = {.pipeline = pipeline,
-                           .host_sync = host_sync,
-                           .host_sync_parameters = parameters_of(scenario, host_sync.info),
-                           .capture_alignment = alignment,
-                           .capture_alignment_parameters = parameters_of(scenario, alignment.info),
-                           .device_time = device_time,
-                           .device_time_variants = variants,
-                           .device_time_parameters = parameters_of(scenario, device_time.info),
-                           .gathering = gathering,
-                           .gathering_parameters = parameters_of(scenario, gathering.info),
-                           .scores_offline = needs_offline_amd(pipeline.name),
-                           .problem = problem};
+  PipelineChoice choice = {
+      .pipeline = pipeline,
+      .host_sync = {host_sync, parameters_of(scenario, host_sync.info)},
+      .capture_alignment = {alignment, parameters_of(scenario, alignment.info)},
+      .device_time = {device_time, parameters_of(scenario, device_time.info)},
+      .device_time_variants = variants,
+      .gathering = {gathering, parameters_of(scenario, gathering.info)},
+      .scores_offline = needs_offline_amd(pipeline.name),
+      .problem = problem};
   check_can_be_made(scenario, choice);
   return choice;
 }
@@ -351,9 +341,8 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
     const auto found = std::find(known.begin(), known.end(), *name);
     if (found == known.end()) {
       throw scenarios::InputError(
-          fmt::format("pipelines of {}: {}; others by their algorithms, as "
-                      "host_sync[+capture_alignment]+device_time+gathering",
-                      scenario.name, unknown(*name, known)));
+          fmt::format("pipelines of {}: {}; others by their algorithms, as {}", scenario.name,
+                      unknown(*name, known), stages_formula(kPipelineStages)));
     }
     if (std::find(names.begin(), name, *name) != name) {
       throw scenarios::InputError(fmt::format("pipelines: \"{}\" is named twice", *name));
@@ -376,19 +365,17 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   setup.is_steered = choice.is_steered() || scenario.cameras.frame_control.has_value();
   setup.unsteady_start = from_ms(scenario.cameras.unstable_start_ms);
   setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
-  setup.make_gatherer = [make = choice.gathering.make, parameters = choice.gathering_parameters](
-                            const GatheringSetup& gathering) {
-    return make(parameters, gathering);
+  setup.make_gatherer = [chosen = choice.gathering](const GatheringSetup& gathering) {
+    return chosen.make(gathering);
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
-  if (choice.device_time.make) {
-    setup.make_estimator =
-        [make = choice.device_time.make, parameters = choice.device_time_parameters,
-         variants = choice.device_time_variants, delays = delays_of(scenario, choice)] {
-          return make_variant(variants, make(parameters), delays);
-        };
+  if (choice.device_time.can_be_made()) {
+    setup.make_estimator = [chosen = choice.device_time, variants = choice.device_time_variants,
+                            delays = delays_of(scenario, choice)] {
+      return make_variant(variants, chosen.make(), delays);
+    };
   }
-  const DeviceTimeEntry* offline = find_device_time("regression_offline");
+  const DeviceTimeEntry* offline = find_algorithm<DeviceTimeEntry>("regression_offline");
   if (choice.scores_offline && offline != nullptr &&
       scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
     setup.make_second_estimator = [make = offline->make,
@@ -402,10 +389,10 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
                          RecordingSink& sink, WorldObserver* observer) {
   if (!choice.problem.empty()) throw RecordingFailed(choice.problem);
-  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make();
   std::unique_ptr<CaptureAlignment> alignment;
   if (choice.is_steered()) {
-    alignment = choice.capture_alignment.make(choice.capture_alignment_parameters);
+    alignment = choice.capture_alignment.make();
   }
   RecordingCost cost = source.record({.seed = seed,
                                       .pipeline = choice.pipeline.name,

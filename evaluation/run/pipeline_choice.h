@@ -33,17 +33,30 @@
 
 namespace simbench::evaluation {
 
+// An algorithm with its checked parameters.
+template <class Entry>
+struct ChosenAlgorithm {
+  Entry entry;
+  Parameters parameters;
+
+  const AlgorithmInfo& info() const { return entry.info; }
+  // Not of the oracle of device_time, which is none.
+  bool can_be_made() const { return static_cast<bool>(entry.make); }
+  auto make() const { return entry.make(parameters); }
+  auto make(const GatheringSetup& setup) const { return entry.make(parameters, setup); }
+  // Whether it runs as another choice does.
+  bool is_same(const ChosenAlgorithm& other) const {
+    return info().name == other.info().name && parameters.all() == other.parameters.all();
+  }
+};
+
 struct PipelineChoice {
   scenarios::Pipeline pipeline;
-  HostSyncEntry host_sync;
-  Parameters host_sync_parameters;
-  CaptureAlignmentEntry capture_alignment;  // without a name: none
-  Parameters capture_alignment_parameters;
-  DeviceTimeEntry device_time;          // of the base name
-  DeviceTimeName device_time_variants;  // the suffixes in the pipeline's name
-  Parameters device_time_parameters;
-  GatheringEntry gathering;
-  Parameters gathering_parameters;
+  ChosenAlgorithm<HostSyncEntry> host_sync;
+  ChosenAlgorithm<CaptureAlignmentEntry> capture_alignment;  // without a name: none
+  ChosenAlgorithm<DeviceTimeEntry> device_time;              // of the base name
+  DeviceTimeName device_time_variants;                       // the suffixes in the pipeline's name
+  ChosenAlgorithm<GatheringEntry> gathering;
   bool scores_offline = false;  // SeedScore::offline_amd_ms, for claim C7
   std::string problem{};        // why its programs cannot run, one line
   // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "algorithms/ports/host_sync.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/unverified_scores.h"
 #include "recording/forwarding_sink.h"
@@ -347,7 +348,7 @@ RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& 
   const ScorerSetup setup = scorer_setup(scenario, choice);
   PipelineScorer scorer(setup);
   DetailKeeper keeper(scorer, setup, run);
-  const auto service = choice.host_sync.make(choice.host_sync_parameters)->warm_up();
+  const auto service = choice.host_sync.make()->warm_up();
   RunWorld world(setup.stream, scenario.hosts.count, service);
   run.score = score_run(source, choice, seed, scorer, keeper, &world);
   run.gathering_interval_ms = 1000 / run.frame_rate_hz * setup.gathering_interval_periods;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -119,11 +120,8 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
              const RowSetting& setting) {
   Row row;
   row.pipeline = pipeline.name;
-  row.host_sync = pipeline.host_sync;
-  row.capture_alignment = pipeline.capture_alignment;
+  copy_stages(pipeline, row);
   if (pipeline.programs) row.model = pipeline.programs->model;
-  row.device_time = pipeline.device_time;
-  row.gathering = pipeline.gathering;
   add_shares(seeds);
   for (const Metric& metric : metrics(setting.kind)) {
     std::visit(Summary{seeds, row}, metric.place);

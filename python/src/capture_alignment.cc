@@ -50,7 +50,7 @@ class PythonCaptureAlignment final : public CaptureAlignment {
 
 void register_python_capture_alignment(const py::dict& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
-  replace_capture_alignment(
+  replace_algorithm<CaptureAlignmentEntry>(
       {.info = algorithm->info, .make = [algorithm](const Parameters& parameters) {
          return std::make_unique<PythonCaptureAlignment>(algorithm, parameters);
        }});

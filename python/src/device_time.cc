@@ -239,7 +239,7 @@ class OfflineEstimator final : public DeviceTimeEstimator {
 
 void register_python_device_time(const py::dict& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
-  replace_device_time(
+  replace_algorithm<DeviceTimeEntry>(
       {.info = algorithm->info,
        .make = [algorithm](const Parameters& parameters) -> std::unique_ptr<DeviceTimeEstimator> {
          const py::gil_scoped_acquire gil;

@@ -136,12 +136,13 @@ class PythonGatherer final : public Gatherer {
 
 void register_python_gathering(const py::dict& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
-  replace_gathering({.info = algorithm->info,
-                     .make = [algorithm](const Parameters& parameters,
-                                         const GatheringSetup& setup) -> std::unique_ptr<Gatherer> {
-                       const py::gil_scoped_acquire gil;
-                       return std::make_unique<PythonGatherer>(algorithm, parameters, setup);
-                     }});
+  replace_algorithm<GatheringEntry>(
+      {.info = algorithm->info,
+       .make = [algorithm](const Parameters& parameters,
+                           const GatheringSetup& setup) -> std::unique_ptr<Gatherer> {
+         const py::gil_scoped_acquire gil;
+         return std::make_unique<PythonGatherer>(algorithm, parameters, setup);
+       }});
 }
 
 }  // namespace simbench::python

@@ -64,9 +64,10 @@ void register_python_host_sync(const py::dict& definition) {
     server = std::make_shared<const PythonAlgorithm>(
         algorithm_of(definition["server"].cast<py::dict>()));
   }
-  replace_host_sync({.info = client->info, .make = [client, server](const Parameters& parameters) {
-                       return std::make_unique<PythonHostSync>(client, server, parameters);
-                     }});
+  replace_algorithm<HostSyncEntry>(
+      {.info = client->info, .make = [client, server](const Parameters& parameters) {
+         return std::make_unique<PythonHostSync>(client, server, parameters);
+       }});
 }
 
 }  // namespace simbench::python

@@ -20,6 +20,7 @@
 #include <set>
 
 #include "algorithms/parameters.h"
+#include "algorithms/ports/host.h"
 #include "python/src/host_requests.h"
 #include "python/src/python_algorithm.h"
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/run/exposure_sets.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
@@ -143,13 +144,9 @@ class Experiment {
 
   void name_rows() {
     for (const PipelineChoice& choice : choices_) {
-      ReprojectionRow row{.pipeline = choice.pipeline.name,
-                          .host_sync = choice.pipeline.host_sync,
-                          .capture_alignment = choice.pipeline.capture_alignment,
-                          .device_time = choice.pipeline.device_time,
-                          .gathering = choice.pipeline.gathering,
-                          .seeds = {},
-                          .published = {}};
+      ReprojectionRow row;
+      row.pipeline = choice.pipeline.name;
+      copy_stages(choice.pipeline, row);
       const auto published = scenario_.studio->published.find(row.pipeline);
       if (published != scenario_.studio->published.end()) row.published = published->second;
       results_.rows.push_back(std::move(row));

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/clock_run/clock_curves.h"
 #include "recording/line_reader.h"
 #include "recording/version.h"
@@ -170,11 +171,11 @@ void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::
 Row read_stages(const JsonNode& node) {
   Row row;
   row.pipeline = node["pipeline"].text();
-  row.host_sync = node["host_sync"].text();
-  row.device_time = node["device_time"].text();
-  row.gathering = node["gathering"].text();
+  for (const StageInfo& stage : kPipelineStages) {
+    if (stage.may_be_absent && !node.has(stage.name)) continue;
+    at_stage(row, stage.id) = node[stage.name].text();
+  }
   if (node.has("model")) row.model = node["model"].text();
-  if (node.has("capture_alignment")) row.capture_alignment = node["capture_alignment"].text();
   return row;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/answer/answer.h"
 #include "evaluation/statistics/paired.h"
 #include "reports/reconstruction/reconstruction_document.h"
@@ -23,10 +24,7 @@ using reconstruction::SeedReprojection;
 
 bool can_run(const ReprojectionRow& row) {
   evaluation::Row choice;
-  choice.host_sync = row.host_sync;
-  choice.capture_alignment = row.capture_alignment;
-  choice.device_time = row.device_time;
-  choice.gathering = row.gathering;
+  copy_stages(row, choice);
   return evaluation::standing_of(choice) == RowStanding::kRunnable;
 }
 

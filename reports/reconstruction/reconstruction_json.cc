@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
 #include "reports/reconstruction/reconstruction_document.h"
@@ -35,11 +36,12 @@ Json published_error_json(const ReprojectionRow& row) {
 }
 
 Json reprojection_row_json(const ReprojectionRow& row) {
-  Json all = {{"pipeline", row.pipeline}, {"host_sync", row.host_sync}};
-  if (!row.capture_alignment.empty()) all["capture_alignment"] = row.capture_alignment;
-  all.update({{"device_time", row.device_time},
-              {"gathering", row.gathering},
-              {"mean_cm", series_json(row.mean_cm())},
+  Json all = {{"pipeline", row.pipeline}};
+  for (const StageInfo& stage : kPipelineStages) {
+    const std::string& name = at_stage(row, stage.id);
+    if (!name.empty()) all[stage.name] = name;
+  }
+  all.update({{"mean_cm", series_json(row.mean_cm())},
               {"std_cm", series_json(row.std_cm())},
               {"median_cm", series_json(row.median_cm())},
               {"p95_cm", series_json(row.p95_cm())},
@@ -120,19 +122,19 @@ constexpr NamedSeries kSeries[] = {{"mean_cm", &ReprojectionRow::mean_cm},
                                    {"p95_cm", &ReprojectionRow::p95_cm},
                                    {"desync_ms", &ReprojectionRow::desync_ms}};
 
-std::string csv_header(bool has_alignment) {
-  std::string line = fmt::format("pipeline,host_sync,{}device_time,gathering",
-                                 has_alignment ? "capture_alignment," : "");
+std::string csv_header(const std::vector<StageInfo>& stages) {
+  std::string line = "pipeline";
+  for (const StageInfo& stage : stages) line += fmt::format(",{}", stage.name);
   for (const NamedSeries& each : kSeries) line += fmt::format(",{0},{0}_p05,{0}_p95", each.name);
   return line +
          ",sets,failed_sets,missing_frames,no_gathered_set_share,published_mean_cm,"
          "published_std_cm\n";
 }
 
-std::string reconstruction_csv_line(const ReprojectionRow& row, bool has_alignment) {
-  std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync)};
-  if (has_alignment) cells.push_back(csv_cell(row.capture_alignment));
-  cells.insert(cells.end(), {csv_cell(row.device_time), csv_cell(row.gathering)});
+std::string reconstruction_csv_line(const ReprojectionRow& row,
+                                    const std::vector<StageInfo>& stages) {
+  std::vector<std::string> cells = {csv_cell(row.pipeline)};
+  for (const StageInfo& stage : stages) cells.push_back(csv_cell(at_stage(row, stage.id)));
   for (const NamedSeries& each : kSeries) {
     const Series series = (row.*each.series)();
     cells.insert(cells.end(),
@@ -173,10 +175,10 @@ std::string reconstruction_json(const ReconstructionResults& results) {
 }
 
 std::string reconstruction_csv(const ReconstructionResults& results) {
-  const bool has_alignment = has_capture_alignment(results.rows);
-  std::string text = csv_header(has_alignment);
+  const std::vector<StageInfo> stages = present_stages(results.rows);
+  std::string text = csv_header(stages);
   for (const ReprojectionRow& row : results.rows) {
-    text += reconstruction_csv_line(row, has_alignment);
+    text += reconstruction_csv_line(row, stages);
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/results_document.h"
@@ -46,10 +47,9 @@ void add_cells(CsvForm form, const Row& row, std::vector<std::string>& cells) {
   }
 }
 
-std::vector<std::string> header(bool has_alignment) {
-  std::vector<std::string> names = {"pipeline", "host_sync"};
-  if (has_alignment) names.emplace_back("capture_alignment");
-  names.insert(names.end(), {"device_time", "gathering"});
+std::vector<std::string> header(const std::vector<StageInfo>& stages) {
+  std::vector<std::string> names = {"pipeline"};
+  for (const StageInfo& stage : stages) names.emplace_back(stage.name);
   add_names(CsvForm::kBand, names);
   add_names(CsvForm::kValue, names);
   names.insert(names.end(),
@@ -123,8 +123,8 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results) || !note_lines(results).empty();
-  const bool has_alignment = has_capture_alignment(results.rows);
-  std::vector<std::string> names = header(has_alignment);
+  const std::vector<StageInfo> stages = present_stages(results.rows);
+  std::vector<std::string> names = header(stages);
   const bool has_figures = !results.published_figures.empty();
   if (has_figures) names.emplace_back("published_figures");
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
@@ -132,9 +132,8 @@ std::string csv(const evaluation::Results& results) {
   if (!changed.empty()) names.emplace_back("changed");
   std::string out = csv_line(names);
   for (const Row& row : results.rows) {
-    std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync)};
-    if (has_alignment) cells.push_back(csv_cell(row.capture_alignment));
-    cells.insert(cells.end(), {csv_cell(row.device_time), csv_cell(row.gathering)});
+    std::vector<std::string> cells = {csv_cell(row.pipeline)};
+    for (const StageInfo& stage : stages) cells.push_back(csv_cell(at_stage(row, stage.id)));
     add_cells(CsvForm::kBand, row, cells);
     add_cells(CsvForm::kValue, row, cells);
     const std::vector<std::string> published = published_cells(row);

@@ -1,5 +1,6 @@
 #include "reports/results/json.h"
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/scoring/rows.h"
 #include "recording/version.h"
 #include "reports/results/derivation_json.h"
@@ -39,13 +40,16 @@ Json metric_json(const evaluation::Metric& metric, const evaluation::Row& row) {
 }
 
 Json row_json(const evaluation::Row& row) {
-  Json all = {{"pipeline", row.pipeline},
-              {"host_sync", row.host_sync},
-              {"device_time", row.device_time},
-              {"gathering", row.gathering},
-              {"offline", row.offline}};
+  Json all = {{"pipeline", row.pipeline}};
+  for (const StageInfo& stage : kPipelineStages) {
+    if (!stage.may_be_absent) all[stage.name] = at_stage(row, stage.id);
+  }
+  all["offline"] = row.offline;
   if (!row.model.empty()) all["model"] = row.model;
-  if (!row.capture_alignment.empty()) all["capture_alignment"] = row.capture_alignment;
+  for (const StageInfo& stage : kPipelineStages) {
+    const std::string& name = at_stage(row, stage.id);
+    if (stage.may_be_absent && !name.empty()) all[stage.name] = name;
+  }
   for (const evaluation::Metric& metric : evaluation::metrics()) {
     Json& object = *metric.json_in == '\0' ? all : all[metric.json_in];
     object[metric.member()] = metric_json(metric, row);

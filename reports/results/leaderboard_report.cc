@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/run/leaderboard.h"
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
@@ -89,18 +90,16 @@ std::string composition(const Board& board) {
   std::vector<const Row*> rows;
   for (const Rank& rank : board.online) rows.push_back(rank.row);
   for (const Rank& rank : board.offline) rows.push_back(rank.row);
-  const auto stage = [&rows](const char* name, std::string Row::*algorithm) {
-    for (const Row* row : rows) {
-      if (row->*algorithm != rows.front()->*algorithm) return fmt::format("each {}", name);
-    }
-    return rows.front()->*algorithm;
-  };
-  const bool is_steered =
-      std::ranges::any_of(rows, [](const Row* row) { return !row->capture_alignment.empty(); });
-  const std::string alignment =
-      is_steered ? stage("capture_alignment", &Row::capture_alignment) + " + " : "";
-  return fmt::format("{} + {}{} + {}", stage("host_sync", &Row::host_sync), alignment,
-                     stage("device_time", &Row::device_time), stage("gathering", &Row::gathering));
+  std::string text;
+  for (const StageInfo& stage : kPipelineStages) {
+    const std::string& name = at_stage(*rows.front(), stage.id);
+    const bool is_varied =
+        std::ranges::any_of(rows, [&](const Row* row) { return at_stage(*row, stage.id) != name; });
+    if (!is_varied && name.empty()) continue;
+    text += text.empty() ? "" : " + ";
+    text += is_varied ? fmt::format("each {}", stage.name) : name;
+  }
+  return text;
 }
 
 std::string order_legend(const Results& results) {

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/results.h"
 #include "reports/text/block.h"
@@ -57,32 +58,12 @@ Block failures_block(const evaluation::Results& results);
 // The floor of two-way methods with unequal links; empty if links are equal.
 std::string asymmetry_line(const evaluation::Results& results);
 
-// What steers the exposures of a row of any kind; empty: nothing, or rows of the kind do not say.
-template <class AnyRow>
-std::string capture_alignment_of(const AnyRow& row) {
-  if constexpr (requires { row.capture_alignment; }) return row.capture_alignment;
-  return "";
-}
-
-// Whether something steers the exposures of one of the rows.
-template <class Rows>
-bool has_capture_alignment(const Rows& rows) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [](const auto& row) { return !capture_alignment_of(row).empty(); });
-}
-
 // The stages of each pipeline, for rows of any kind that name them.
 template <class Rows>
 Block stages_block(const Rows& rows) {
-  Block block{.heading =
-                  has_capture_alignment(rows)
-                      ? "Pipelines = host_sync [+ capture_alignment] + device_time + gathering"
-                      : "Pipelines = host_sync + device_time + gathering"};
+  Block block{.heading = "Pipelines = " + stages_formula(present_stages(rows), " ")};
   for (const auto& row : rows) {
-    const std::string alignment = capture_alignment_of(row);
-    block.items.push_back(row.pipeline + " = " + row.host_sync + " + " +
-                          (alignment.empty() ? "" : alignment + " + ") + row.device_time + " + " +
-                          row.gathering);
+    block.items.push_back(row.pipeline + " = " + joined_stages(row, " + "));
   }
   return block;
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/parameter_binder.h"
+
 namespace simbench {
 namespace {
 
@@ -125,9 +127,15 @@ TEST(ParametersDeathTest, AskingForWhatWasNotDeclaredIsABug) {
 }
 
 TEST(Parameters, RefusesThoseThatContradictEachOther) {
-  const std::vector<ParameterSpec> specs = {
-      number_parameter("least", 6, 0, 17, "", "test"),
-      not_below("least", number_parameter("most", 10, 0, 17, "", "test"))};
+  struct Bounds {
+    int least = 6;
+    int most = 10;
+    void bind(ParameterBinder& parameters) {
+      parameters.number("least", least, 0, 17, "", "test");
+      parameters.number("most", most, 0, 17, "", "test").not_below("least");
+    }
+  };
+  const std::vector<ParameterSpec> specs = specs_of(Bounds{});
   const auto problem = [&](const ParameterValues& given, const std::string& blamed) {
     try {
       check_parameters(specs, given);

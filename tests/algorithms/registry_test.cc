@@ -35,7 +35,7 @@ DeviceTimeEntry constant(const std::string& name) {
 }
 
 TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
-  std::vector<std::string> device_time = entry_names(device_time_algorithms());
+  std::vector<std::string> device_time = entry_names(algorithms<DeviceTimeEntry>());
   device_time.resize(22);  // other tests may have registered more
   EXPECT_THAT(
       device_time,
@@ -44,19 +44,19 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
                   "regression_300", "regression_all", "hull_300", "hull_switch_10s",
                   "hull_switch_60s", "hull_offline", "two_way_poll", "olson_50ppm", "minimum_1s",
                   "theil_sen_300", "kalman", "librealsense_global", "host_stamps", "rocsync_led"));
-  std::vector<std::string> alignments = entry_names(capture_alignment_algorithms());
+  std::vector<std::string> alignments = entry_names(algorithms<CaptureAlignmentEntry>());
   alignments.resize(8);  // likewise
   EXPECT_THAT(alignments,
               ElementsAre("free_run", "oracle", "libsoftwaresync", "rpi_sync", "scheduled_action",
                           "periodic_ptp", "pid_frame_rate", "phase_rate"));
-  EXPECT_THAT(entry_names(gathering_algorithms()),
+  EXPECT_THAT(entry_names(algorithms<GatheringEntry>()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",
                           "phase_binning", "oracle"));
 }
 
 TEST(Registry, MakesEveryBuiltInAlgorithm) {
-  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
+  for (const DeviceTimeEntry& entry : nonempty(algorithms<DeviceTimeEntry>())) {
     EXPECT_FALSE(entry.info.summary.empty() && entry.info.source != "test") << entry.info.name;
     if (entry.info.name == "oracle") {
       EXPECT_FALSE(entry.make) << "only evaluation has the truth";
@@ -70,7 +70,7 @@ TEST(Registry, MakesEveryBuiltInAlgorithm) {
         << entry.info.name;
   }
   const GatheringSetup setup = {.sources = 2, .period = from_ms(20), .interval = from_ms(10)};
-  for (const GatheringEntry& entry : nonempty(gathering_algorithms())) {
+  for (const GatheringEntry& entry : nonempty(algorithms<GatheringEntry>())) {
     const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
     EXPECT_EQ(gatherer->discarded(), 0U);
     EXPECT_EQ(gatherer->from_first_frame(), entry.info.family == "genlock") << entry.info.name;
@@ -78,35 +78,35 @@ TEST(Registry, MakesEveryBuiltInAlgorithm) {
 }
 
 TEST(Registry, FindsByName) {
-  ASSERT_NE(find_gathering("yoon2021"), nullptr);
-  EXPECT_EQ(find_gathering("yoon2021")->info.name, "yoon2021");
-  EXPECT_EQ(find_gathering("yoon"), nullptr);
-  EXPECT_EQ(find_device_time("yoon2021"), nullptr) << "names belong to a stage";
-  EXPECT_EQ(find_host_sync("regression_30"), nullptr);
+  ASSERT_NE(find_algorithm<GatheringEntry>("yoon2021"), nullptr);
+  EXPECT_EQ(find_algorithm<GatheringEntry>("yoon2021")->info.name, "yoon2021");
+  EXPECT_EQ(find_algorithm<GatheringEntry>("yoon"), nullptr);
+  EXPECT_EQ(find_algorithm<DeviceTimeEntry>("yoon2021"), nullptr) << "names belong to a stage";
+  EXPECT_EQ(find_algorithm<HostSyncEntry>("regression_30"), nullptr);
 }
 
 TEST(Registry, ReplacesAUsersAlgorithmButNoneOfItsOwn) {
   const std::string name = "registry_test_replaced";
-  replace_device_time(constant(name));
-  const std::size_t count = device_time_algorithms().size();
+  replace_algorithm<DeviceTimeEntry>(constant(name));
+  const std::size_t count = algorithms<DeviceTimeEntry>().size();
   DeviceTimeEntry other = constant(name);
   other.info.summary = "another";
-  replace_device_time(other);
-  EXPECT_EQ(device_time_algorithms().size(), count);
-  EXPECT_EQ(find_device_time(name)->info.summary, "another");
-  EXPECT_THROW(replace_device_time(constant("raw_arrival")), std::invalid_argument);
+  replace_algorithm<DeviceTimeEntry>(other);
+  EXPECT_EQ(algorithms<DeviceTimeEntry>().size(), count);
+  EXPECT_EQ(find_algorithm<DeviceTimeEntry>(name)->info.summary, "another");
+  EXPECT_THROW(replace_algorithm<DeviceTimeEntry>(constant("raw_arrival")), std::invalid_argument);
 }
 
 TEST(Registry, TakesAUsersAlgorithmOnce) {
   static int repetition = 0;  // of this test in this program
   const std::string name = "registry_test_constant" + std::to_string(repetition++);
-  register_device_time(constant(name));
-  EXPECT_THAT(entry_names(device_time_algorithms()), Contains(name));
-  const DeviceTimeEntry* entry = find_device_time(name);
+  register_algorithm<DeviceTimeEntry>(constant(name));
+  EXPECT_THAT(entry_names(algorithms<DeviceTimeEntry>()), Contains(name));
+  const DeviceTimeEntry* entry = find_algorithm<DeviceTimeEntry>(name);
   ASSERT_NE(entry, nullptr);
   EXPECT_EQ(entry->make({})->stamp({}), GlobalTime(from_ms(1)));
-  EXPECT_THROW(register_device_time(constant(name)), std::invalid_argument);
-  EXPECT_THROW(register_device_time(constant("raw_arrival")), std::invalid_argument);
+  EXPECT_THROW(register_algorithm<DeviceTimeEntry>(constant(name)), std::invalid_argument);
+  EXPECT_THROW(register_algorithm<DeviceTimeEntry>(constant("raw_arrival")), std::invalid_argument);
 }
 
 }  // namespace

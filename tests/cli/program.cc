@@ -56,13 +56,26 @@ std::string status_line(pid_t process, const std::string& name) {
   return "";
 }
 
+bool has_ended(pid_t process) {
+  const std::string state = status_line(process, "State");
+  return state.empty() || state.starts_with("Z");
+}
+
 // Returns when the program has a handler of SIGINT, or has ended.
 void wait_for_handler(pid_t process) {
   constexpr std::uint64_t kInterrupt = std::uint64_t{1} << (SIGINT - 1);
   for (;;) {
     const std::string caught = status_line(process, "SigCgt");
-    if (caught.empty() || status_line(process, "State").starts_with("Z")) return;
+    if (caught.empty() || has_ended(process)) return;
     if ((std::stoull(caught, nullptr, 16) & kInterrupt) != 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+// Returns when there is something in the file, or the program has ended.
+void wait_for_content(pid_t process, const fs::path& file) {
+  std::error_code missing;
+  while (!has_ended(process) && (!fs::exists(file, missing) || fs::file_size(file, missing) == 0)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -84,6 +97,9 @@ ProgramResult ProgramTest::run(const std::vector<std::string>& arguments,
   if (process == 0) become_program(folder(), command, out, err, options);
   if (options.interrupt_after) {
     wait_for_handler(process);
+    if (!options.interrupt_once_written.empty()) {
+      wait_for_content(process, folder() / options.interrupt_once_written);
+    }
     std::this_thread::sleep_for(*options.interrupt_after);
     kill(process, SIGINT);
   }

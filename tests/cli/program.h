@@ -25,6 +25,8 @@ struct ProgramOptions {
   // SIGINT so long after the program has begun to handle it, that is, in the midst of its work: how
   // long it takes to get there depends on the machine. The second one is up to the test.
   std::optional<std::chrono::milliseconds> interrupt_after = std::nullopt;
+  // Besides, not before this file of the test's folder has something in it.
+  std::string interrupt_once_written = {};
   // SIGINT so long after the start, wherever the program is then, so many times.
   std::optional<std::chrono::microseconds> interrupt_at = std::nullopt;
   int interrupts = 1;

@@ -35,9 +35,12 @@ struct Given : T {
 extern const Whatever whatever, use, print, correct_the_clock, oscillator, os_time, kernel_stamp;
 
 // algorithms/
+struct MySettings {
+  void bind(ParameterBinder&);
+};
 class Mine : public DeviceTimeEstimator {
  public:
-  explicit Mine(const Parameters&);
+  explicit Mine(const MySettings&);
   GlobalTime stamp(const DeviceSample&) override;
 };
 Task<void> serve(Host&, PeerId);

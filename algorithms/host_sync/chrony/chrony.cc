@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -31,14 +30,14 @@ ChronyCorrection ChronyReference::update(const ChronyEstimate& estimate, double 
   if (size_s > 0) {
     const double area = kSlewArea * settings_.correction_ratio * interval_s * estimate.offset_sd_s;
     const double time_s = std::max(area / size_s, kMinSlewTime);
-    correction.slew_rate = std::min(size_s / time_s, settings_.max_slew_rate);
+    correction.slew_rate = std::min(size_s / time_s, settings_.max_slew_ppm * 1e-6);
   }
   return correction;
 }
 
 double ChronyReference::change_of_frequency(const ChronyEstimate& estimate) {
   double gain = 0;
-  if (estimate.skew <= settings_.max_update_skew) {
+  if (estimate.skew <= settings_.max_update_skew_ppm * 1e-6) {
     const double present = kMeasuredWeight * skew_ * skew_;
     gain = present / (present + estimate.skew * estimate.skew);
   }
@@ -292,12 +291,12 @@ ChronySample ChronyClient::sample_of(const Pending& complete) const {
   return sample;
 }
 
-Task<void> ChronyService::run_master(Host& host, std::vector<PeerId> slaves) {
+Task<void> serve_chronyd(Host& host, std::vector<PeerId> slaves, ChronySettings /*settings*/) {
   co_await serve_ntp(host, std::move(slaves));
 }
 
-Task<void> ChronyService::run_slave(Host& host, PeerId master) {
-  ChronyClient client(host, master, settings_);
+Task<void> follow_chronyd(Host& host, PeerId master, ChronySettings settings) {
+  ChronyClient client(host, master, settings);
   co_await client.run();
 }
 
@@ -307,110 +306,80 @@ const char* const kChronyDocumentation =
     "chrony.conf documentation (docs/reference/host_sync.md section 2)";
 const char* const kDebianConfiguration = "chrony.conf of Debian 12";
 
-ChronyStamps chrony_stamps(const std::string& name) {
-  if (name == "kernel") return ChronyStamps::kKernel;
-  return name == "available" ? ChronyStamps::kAvailable : ChronyStamps::kApplication;
+void bind_polling(ParameterBinder& parameters, ChronySettings& settings) {
+  parameters.number("min_poll", settings.poll_min, -7, 17,
+                    "shortest poll interval, log2 s; below a second only in a local network",
+                    kChronyDocumentation);
+  parameters
+      .number("max_poll", settings.poll_max, -7, 17, "longest poll interval, log2 s",
+              kChronyDocumentation)
+      .not_below("min_poll");
+  parameters.number("poll_target", settings.poll_target, 3, 60,
+                    "samples that the poll interval aims at", kChronyDocumentation);
+  parameters.flag("iburst", settings.initial_burst, "four good exchanges at 2 s to begin with",
+                  kDebianConfiguration);
+  parameters.flag("xleave", settings.is_interleaved,
+                  "interleaved mode: the server's departure stamps are its kernel's",
+                  kChronyDocumentation);
+  parameters.choice("stamps", settings.stamps,
+                    {{"available", ChronyStamps::kAvailable},
+                     {"kernel", ChronyStamps::kKernel},
+                     {"application", ChronyStamps::kApplication}},
+                    "t1 from the kernel where it stamps (available), from the kernel or not at "
+                    "all (kernel), or from before the send",
+                    "chronyd takes the best it gets");
 }
 
-// What a configuration states. As installed: Debian's.
-struct ChronyForm {
-  int min_poll = 6;
-  int max_poll = 10;
-  double poll_target = 8;
-  bool initial_burst = true;
-  bool is_interleaved = false;
-  const char* stamps = "available";
-  double service_hours = 4;
-};
-
-std::vector<ParameterSpec> polling_parameters(const ChronyForm& form) {
-  return {
-      number_parameter("min_poll", form.min_poll, -7, 17,
-                       "shortest poll interval, log2 s; below a second only in a local network",
-                       kChronyDocumentation),
-      not_below("min_poll",
-                number_parameter("max_poll", form.max_poll, -7, 17, "longest poll interval, log2 s",
-                                 kChronyDocumentation)),
-      number_parameter("poll_target", form.poll_target, 3, 60,
-                       "samples that the poll interval aims at", kChronyDocumentation),
-      flag_parameter("iburst", form.initial_burst, "four good exchanges at 2 s to begin with",
-                     kDebianConfiguration),
-      flag_parameter("xleave", form.is_interleaved,
-                     "interleaved mode: the server's departure stamps are its kernel's",
-                     kChronyDocumentation),
-      choice_parameter("stamps", {"available", "kernel", "application"},
-                       "t1 from the kernel where it stamps (available), from the kernel or not at "
-                       "all (kernel), or from before the send",
-                       "chronyd takes the best it gets"),
-  };
+void bind_estimate(ParameterBinder& parameters, ChronyStatsSettings& stats) {
+  parameters.number("min_samples", stats.min_samples, 3, 64, "samples that the runs test leaves",
+                    kChronyDocumentation);
+  parameters
+      .number("max_samples", stats.max_samples, 4, 64, "samples that are kept",
+              kChronyDocumentation)
+      .not_below("min_samples");
+  parameters.number("max_delay_ratio", stats.max_delay_ratio, 0.1, 1e6,
+                    "largest delay above the minimum, in standard deviations of the samples",
+                    kChronyDocumentation);
 }
 
-std::vector<ParameterSpec> clock_parameters(const ChronyForm& form) {
-  return {
-      number_parameter("min_samples", 6, 3, 64, "samples that the runs test leaves",
-                       kChronyDocumentation),
-      not_below("min_samples", number_parameter("max_samples", 64, 4, 64, "samples that are kept",
-                                                kChronyDocumentation)),
-      number_parameter("max_delay_ratio", 10, 0.1, 1e6,
-                       "largest delay above the minimum, in standard deviations of the samples",
-                       kChronyDocumentation),
-      number_parameter("correction_ratio", 3, 0.01, 100,
-                       "duration of a slew over half the time between updates (corrtimeratio)",
-                       kChronyDocumentation),
-      number_parameter("max_slew_ppm", 83333.333, 1, 100000, "fastest slew (maxslewrate)",
-                       kChronyDocumentation),
-      number_parameter("max_update_skew_ppm", 100, 0.001, 1e6,
-                       "skew above which a frequency is not used (maxupdateskew)",
-                       kDebianConfiguration),
-      number_parameter("step_threshold_s", 1, 0, 1e9, "offset above which the clock is stepped",
-                       kDebianConfiguration),
-      number_parameter("step_updates", 3, 0, 1e6, "first updates that may step (makestep)",
-                       kDebianConfiguration),
-      number_parameter("service_hours", form.service_hours, 0, 1e4,
-                       "how long the service has run when the capture starts",
-                       "assumption: start-up transients are over"),
-  };
+void bind_reference(ParameterBinder& parameters, ChronyReferenceSettings& reference) {
+  parameters.number("correction_ratio", reference.correction_ratio, 0.01, 100,
+                    "duration of a slew over half the time between updates (corrtimeratio)",
+                    kChronyDocumentation);
+  parameters.number("max_slew_ppm", reference.max_slew_ppm, 1, 100000, "fastest slew (maxslewrate)",
+                    kChronyDocumentation);
+  parameters.number("max_update_skew_ppm", reference.max_update_skew_ppm, 0.001, 1e6,
+                    "skew above which a frequency is not used (maxupdateskew)",
+                    kDebianConfiguration);
+  parameters.number("step_threshold_s", reference.step_threshold_s, 0, 1e9,
+                    "offset above which the clock is stepped", kDebianConfiguration);
+  parameters.number("step_updates", reference.step_updates, 0, 1e6,
+                    "first updates that may step (makestep)", kDebianConfiguration);
 }
 
-std::vector<ParameterSpec> chrony_parameters(const ChronyForm& form) {
-  std::vector<ParameterSpec> specs = polling_parameters(form);
-  for (ParameterSpec& spec : specs) {
-    if (spec.name == "stamps") spec.fallback = std::string(form.stamps);
-  }
-  const std::vector<ParameterSpec> rest = clock_parameters(form);
-  specs.insert(specs.end(), rest.begin(), rest.end());
-  return specs;
+}  // namespace
+
+void ChronySettings::bind(ParameterBinder& parameters) {
+  bind_polling(parameters, *this);
+  bind_estimate(parameters, stats);
+  bind_reference(parameters, reference);
+  parameters.number("service_hours", service_time, 0, 1e4,
+                    "how long the service has run when the capture starts",
+                    "assumption: start-up transients are over");
 }
 
-std::unique_ptr<HostSync> make_chrony(const Parameters& parameters) {
-  ChronySettings settings;
-  settings.poll_min = static_cast<int>(parameters.number("min_poll"));
-  settings.poll_max = static_cast<int>(parameters.number("max_poll"));
-  settings.poll_target = parameters.number("poll_target");
-  settings.initial_burst = parameters.flag("iburst");
-  settings.stats.min_samples = static_cast<std::size_t>(parameters.number("min_samples"));
-  settings.stats.max_samples = static_cast<std::size_t>(parameters.number("max_samples"));
-  settings.stats.max_delay_ratio = parameters.number("max_delay_ratio");
-  settings.reference.correction_ratio = parameters.number("correction_ratio");
-  settings.reference.max_slew_rate = parameters.number("max_slew_ppm") * 1e-6;
-  settings.reference.max_update_skew = parameters.number("max_update_skew_ppm") * 1e-6;
-  settings.reference.step_threshold_s = parameters.number("step_threshold_s");
-  settings.reference.step_updates = static_cast<int>(parameters.number("step_updates"));
-  settings.is_interleaved = parameters.flag("xleave");
-  settings.stamps = chrony_stamps(parameters.text("stamps"));
-  settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
-  return std::make_unique<ChronyService>(settings);
-}
+namespace {
 
-HostSyncEntry chrony(const char* name, const char* summary, const ChronyForm& form) {
-  HostSyncEntry entry;
-  entry.info.name = name;
-  entry.info.family = "chrony";
-  entry.info.summary = summary;
-  entry.info.source = "chrony 4.3 (docs/reference/host_sync.md sections 1 and 2); RFC 5905";
-  entry.info.parameters = chrony_parameters(form);
-  entry.make = make_chrony;
-  return entry;
+// As Debian installs it, but for what `settings` say of polls and stamps.
+HostSyncEntry chrony(const char* name, const char* summary, ChronySettings settings) {
+  settings.reference.max_update_skew_ppm = 100;
+  settings.reference.step_updates = 3;
+  return with_settings<HostSyncEntry>(
+      {.name = name,
+       .family = "chrony",
+       .summary = summary,
+       .source = "chrony 4.3 (docs/reference/host_sync.md sections 1 and 2); RFC 5905"},
+      settings, kMake<ChronyService>);
 }
 
 }  // namespace
@@ -419,19 +388,19 @@ std::vector<HostSyncEntry> host_sync_chrony() {
   return {
       chrony("chrony", "NTP client in the manner of chronyd, as Debian installs it", {}),
       chrony("chrony_lan", "The same with the line of chrony's FAQ for a LAN, interleaved",
-             {.min_poll = 2,
-              .max_poll = 4,
+             {.poll_min = 2,
+              .poll_max = 4,
               .poll_target = 30,
               .initial_burst = false,
               .is_interleaved = true,
-              .stamps = "kernel"}),
+              .stamps = ChronyStamps::kKernel}),
       chrony("chrony_lan_fast", "The same four times a second, interleaved",
-             {.min_poll = -2,
-              .max_poll = -2,
+             {.poll_min = -2,
+              .poll_max = -2,
               .initial_burst = false,
               .is_interleaved = true,
-              .stamps = "kernel",
-              .service_hours = 0.5}),
+              .stamps = ChronyStamps::kKernel,
+              .service_time = from_ms(0.5 * 3600e3)}),
   };
 }
 

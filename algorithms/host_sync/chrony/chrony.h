@@ -37,8 +37,10 @@
 #include <vector>
 
 #include "algorithms/host_sync/chrony/chrony_source_stats.h"
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/ntp/ntp_association.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/parameter_binder.h"
+#include "algorithms/ports/host.h"
 
 namespace simbench {
 
@@ -92,11 +94,11 @@ class ChronyPoll {
 //
 //  - Frequency: the skews weigh the measured one against the present one,
 //    gain = 3 s^2 / (3 s^2 + m^2) with s the present skew and m the measured one; a measurement
-//    with a skew above max_update_skew changes nothing. The skew follows by the same gain, widened
-//    by how much the two disagree.
+//    with a skew above max_update_skew_ppm changes nothing. The skew follows by the same gain,
+//    widened by how much the two disagree.
 //  - Offset: a slew corrects all of it. An offset as large as the estimate's own deviation takes
 //    half of correction_ratio times the interval between updates; a larger one is corrected faster
-//    in proportion, in no less than 1 s, at no more than max_slew_rate.
+//    in proportion, in no less than 1 s, at no more than max_slew_ppm.
 //  - Step: in the first step_updates updates an offset above step_threshold_s is stepped instead.
 //
 // A pure state machine.
@@ -106,9 +108,9 @@ class ChronyPoll {
 //   ChronyReference reference({});
 //   const ChronyCorrection correction = reference.update(*stats.estimate(), now_s, left_s);
 struct ChronyReferenceSettings {
-  double correction_ratio = 3;       // corrtimeratio
-  double max_slew_rate = 83333e-6;   // as a fraction
-  double max_update_skew = 1000e-6;  // as a fraction
+  double correction_ratio = 3;  // corrtimeratio
+  double max_slew_ppm = 83333.333;
+  double max_update_skew_ppm = 1000;
   double step_threshold_s = 1;
   int step_updates = 0;
 };
@@ -156,8 +158,8 @@ enum class ChronyStamps : std::uint8_t {
 };
 
 struct ChronySettings {
-  ChronyStatsSettings stats;
-  ChronyReferenceSettings reference;
+  ChronyStatsSettings stats{};
+  ChronyReferenceSettings reference{};
   int poll_min = 6;  // log2 s
   int poll_max = 10;
   double poll_target = 8;  // samples
@@ -165,18 +167,13 @@ struct ChronySettings {
   bool is_interleaved = false;
   ChronyStamps stamps = ChronyStamps::kAvailable;
   Nanoseconds service_time = from_ms(4 * 3600e3);
+
+  void bind(ParameterBinder& parameters);
 };
 
-class ChronyService : public HostSync {
- public:
-  explicit ChronyService(const ChronySettings& settings) : settings_(settings) {}
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  ChronySettings settings_;
-};
+Task<void> serve_chronyd(Host& host, std::vector<PeerId> slaves, ChronySettings settings);
+Task<void> follow_chronyd(Host& host, PeerId master, ChronySettings settings);
+using ChronyService = ClockService<ChronySettings, serve_chronyd, follow_chronyd>;
 
 struct UnfinishedSlew {
   double offset_s = 0;

@@ -25,6 +25,8 @@ namespace {
 constexpr int kWindowsOfALine = 3;
 // A point this far from where a rate could lead means that a clock has jumped.
 constexpr double kJumpNs = 1e6;
+// A slave without a line for so long reports that.
+constexpr Nanoseconds kHuygensPatience{30'000'000'000};
 
 Task<void> send_to(Host& host, PeerId peer, Bytes bytes) {
   co_await host.open_channel(peer, Transport::kDatagram).send(std::move(bytes));
@@ -291,7 +293,7 @@ class HuygensSlave : public HuygensHost {
     if (const std::string lacking = raw().lacking(); !lacking.empty()) {
       return outcome_.failed(0, lacking);
     }
-    if (host().steady_clock().now() - begin_ < Huygens::kPatience) return;
+    if (host().steady_clock().now() - begin_ < kHuygensPatience) return;
     outcome_.failed(0, "no line from host " + std::to_string(master_) +
                            "; is it running and reachable, and do the hosts stamp their messages?");
   }
@@ -312,13 +314,13 @@ class HuygensSlave : public HuygensHost {
 
 }  // namespace
 
-Task<void> Huygens::run_master(Host& host, std::vector<PeerId> slaves) {
-  HuygensMaster master(host, std::move(slaves), settings_);
+Task<void> serve_huygens(Host& host, std::vector<PeerId> slaves, HuygensSettings settings) {
+  HuygensMaster master(host, std::move(slaves), settings);
   co_await master.run();
 }
 
-Task<void> Huygens::run_slave(Host& host, PeerId master) {
-  HuygensSlave slave(host, master, settings_);
+Task<void> follow_huygens(Host& host, PeerId master, HuygensSettings settings) {
+  HuygensSlave slave(host, master, settings);
   co_await slave.run();
 }
 
@@ -326,54 +328,39 @@ namespace {
 
 const char* const kHuygensPaper = "Geng et al., NSDI 2018";
 
-std::vector<ParameterSpec> huygens_parameters(bool has_hardware_stamps) {
-  std::vector<ParameterSpec> specs = {
-      number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
-                       kAssumption),
-      number_parameter("neighbours", 10, 2, 100, "hosts that each host probes, on average",
-                       kHuygensPaper),
-      number_parameter("probe_interval_ms", 40, 0.1, 1e6,
-                       "pace of the pairs of probes to each peer",
-                       "assumption: fifty pairs in a window"),
-      number_parameter("spacing_us", 100, 0, 1e6, "time between the two probes of a pair",
-                       "assumption: longer than an interrupt is held back"),
-      number_parameter("purity_us", has_hardware_stamps ? 0.1 : 5, 0, 1e6,
-                       "how much their spacing may change on the way in a pure pair",
-                       "assumption: some times the noise of a stamp"),
-      number_parameter("window_s", 2, 0.1, 1e4, "span of the probes of a line", kHuygensPaper),
-      number_parameter("points", 8, 1, 1e3, "windows whose corrected leads the clock is steered by",
-                       "assumption: 16 s, short against the wander of a quartz"),
-      number_parameter("max_rate_ppm", 500, 1, 5e3, "largest rate between two hosts",
-                       "the limit of adjtimex(2)"),
-  };
-  append_steering_parameters(specs);
-  if (!has_hardware_stamps) specs.push_back(software_stamps_parameter());
-  return specs;
+}  // namespace
+
+void HuygensSettings::bind(ParameterBinder& parameters) {
+  bind_warm_up(parameters, service_time);
+  parameters.number("neighbours", neighbours, 2, 100, "hosts that each host probes, on average",
+                    kHuygensPaper);
+  parameters.number("probe_interval_ms", probe_interval, 0.1, 1e6,
+                    "pace of the pairs of probes to each peer",
+                    "assumption: fifty pairs in a window");
+  parameters.number("spacing_us", spacing, 0, 1e6, "time between the two probes of a pair",
+                    "assumption: longer than an interrupt is held back");
+  parameters.number("purity_us", purity, 0, 1e6,
+                    "how much their spacing may change on the way in a pure pair",
+                    "assumption: some times the noise of a stamp");
+  parameters.number("window_s", window, 0.1, 1e4, "span of the probes of a line", kHuygensPaper);
+  parameters.number("points", points, 1, 1e3,
+                    "windows whose corrected leads the clock is steered by",
+                    "assumption: 16 s, short against the wander of a quartz");
+  parameters.number("max_rate_ppm", max_rate_ppm, 1, 5e3, "largest rate between two hosts",
+                    "the limit of adjtimex(2)");
+  steering.bind(parameters);
+  bind_software_stamps(parameters, stamps);
 }
 
-HostSyncEntry huygens(std::string name, std::string summary, bool has_hardware_stamps) {
-  HostSyncEntry entry;
-  entry.info.name = std::move(name);
-  entry.info.family = "huygens";
-  entry.info.summary = std::move(summary);
-  entry.info.source = kHuygensPaper;
-  entry.info.parameters = huygens_parameters(has_hardware_stamps);
-  if (has_hardware_stamps) entry.info.needs = {Need::kHardwareStamps};
-  entry.make = [has_hardware_stamps](const Parameters& parameters) {
-    HuygensSettings settings;
-    settings.stamps = has_hardware_stamps ? StampSource::kCard : software_stamps(parameters);
-    settings.service_time = from_seconds(parameters.number("warm_up_s"));
-    settings.neighbours = static_cast<std::size_t>(parameters.number("neighbours"));
-    settings.probe_interval = from_ms(parameters.number("probe_interval_ms"));
-    settings.spacing = from_us(parameters.number("spacing_us"));
-    settings.purity = from_us(parameters.number("purity_us"));
-    settings.window = from_seconds(parameters.number("window_s"));
-    settings.points = static_cast<std::size_t>(parameters.number("points"));
-    settings.max_rate_ppm = parameters.number("max_rate_ppm");
-    settings.steering = steering_settings(parameters);
-    return std::make_unique<Huygens>(settings);
-  };
-  return entry;
+namespace {
+
+HostSyncEntry huygens(std::string name, std::string summary, HuygensSettings settings) {
+  return with_settings<HostSyncEntry>({.name = std::move(name),
+                                       .family = "huygens",
+                                       .summary = std::move(summary),
+                                       .source = kHuygensPaper,
+                                       .needs = needs_of(settings.stamps)},
+                                      settings, kMake<Huygens>);
 }
 
 }  // namespace
@@ -382,9 +369,10 @@ std::vector<HostSyncEntry> host_sync_huygens() {
   return {
       huygens("huygens_software",
               "Huygens with software stamps: coded probes of all pairs, corrected around loops",
-              false),
+              {}),
       huygens("huygens_hardware",
-              "Huygens with the network cards' stamps, on their clocks left to themselves", true),
+              "Huygens with the network cards' stamps, on their clocks left to themselves",
+              {.stamps = StampSource::kCard, .purity = from_us(0.1)}),
   };
 }
 

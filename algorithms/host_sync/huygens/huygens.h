@@ -32,12 +32,12 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_H_
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/clock_steering.h"
 #include "algorithms/host_sync/stamps.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/ports/host.h"
 
 namespace simbench {
 
@@ -51,21 +51,14 @@ struct HuygensSettings {
   Nanoseconds window = from_ms(2e3);
   std::size_t points = 8;
   double max_rate_ppm = 500;
-  SteeringSettings steering;
+  SteeringSettings steering{};
+
+  void bind(ParameterBinder& parameters);
 };
 
-class Huygens : public HostSync {
- public:
-  static constexpr Nanoseconds kPatience{30'000'000'000};
-
-  explicit Huygens(HuygensSettings settings) : settings_(settings) {}
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  HuygensSettings settings_;
-};
+Task<void> serve_huygens(Host& host, std::vector<PeerId> slaves, HuygensSettings settings);
+Task<void> follow_huygens(Host& host, PeerId master, HuygensSettings settings);
+using Huygens = ClockService<HuygensSettings, serve_huygens, follow_huygens>;
 
 }  // namespace simbench
 

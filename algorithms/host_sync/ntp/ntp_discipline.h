@@ -103,7 +103,7 @@ struct NtpDisciplineSettings {
   int poll_max = 10;
   double precision_s = 1e-6;
   // A frequency to start with, as from a drift file; nothing: measure it first.
-  std::optional<double> frequency;
+  std::optional<double> frequency{};
 };
 
 enum class NtpState : std::uint8_t { kNset, kFset, kFreq, kSync, kSpik };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -268,29 +267,22 @@ void NtpClient::note_reply(bool replied) {
 
 }  // namespace
 
-NtpStamps stamps_of(const Parameters& parameters) {
-  return parameters.text("stamps") == "kernel" ? NtpStamps::kKernel : NtpStamps::kApplication;
-}
-
-NtpService::NtpService(const NtpSettings& settings) : settings_(settings) {
-  if (settings_.mode == NtpMode::kUnicast) return;
-  const int poll =
-      static_cast<int>(std::lround(std::log2(to_seconds(settings.broadcast_interval))));
-  settings_.discipline.poll_min = poll;
-  settings_.discipline.poll_max = poll;
-}
-
-Task<void> NtpService::run_master(Host& host, std::vector<PeerId> slaves) {
+Task<void> serve_ntpd(Host& host, std::vector<PeerId> slaves, NtpSettings settings) {
   std::vector<Task<void>> servers;
   servers.push_back(serve_ntp(host, slaves));
-  if (settings_.mode != NtpMode::kUnicast) {
-    servers.push_back(broadcast_ntp(host, std::move(slaves), settings_.broadcast_interval));
+  if (settings.mode != NtpMode::kUnicast) {
+    servers.push_back(broadcast_ntp(host, std::move(slaves), settings.broadcast_interval));
   }
   co_await join_all(std::move(servers));
 }
 
-Task<void> NtpService::run_slave(Host& host, PeerId master) {
-  NtpClient client(host, master, settings_);
+Task<void> follow_ntpd(Host& host, PeerId master, NtpSettings settings) {
+  if (settings.mode != NtpMode::kUnicast) {
+    const double interval_s = to_seconds(settings.broadcast_interval);
+    settings.discipline.poll_min = static_cast<int>(std::lround(std::log2(interval_s)));
+    settings.discipline.poll_max = settings.discipline.poll_min;
+  }
+  NtpClient client(host, master, settings);
   co_await client.run();
 }
 
@@ -299,121 +291,81 @@ namespace {
 const char* const kReferenceNtp =
     "reference implementation (docs/reference/host_sync.md section 2)";
 
-// What one registered form of ntpd has as its defaults.
-struct NtpForm {
-  std::string name;
-  std::string family;  // forms of one family share the scenario's parameters
-  std::string summary;
-  NtpMode mode = NtpMode::kUnicast;
-  NtpLoop loop = NtpLoop::kKernel;
-  int poll_min = 6;
-  int poll_max = 10;
-  double service_hours = 16;
-  bool reads_drift_file = true;
-};
-
-std::vector<ParameterSpec> ntp_parameters(const NtpForm& form) {
-  const char* const poll_source =
-      "ntpd's documentation, minpoll and maxpoll (confopt.html): from 3 to 17, by default 6 and 10";
-  return {
-      number_parameter("step_ms", 128, 0, 1e6,
-                       "offset above which the clock is stepped; 0: never; 0 or above 500: ntpd's "
-                       "own loop instead of the kernel's",
-                       kReferenceNtp),
-      number_parameter("step_out_s", 300, 300, 1e5,
-                       "how long such an offset must last, and how long the frequency is measured",
-                       "reference implementation, which takes no less than 300; RFC 5905: 900"),
-      number_parameter("panic_s", 1000, 0, 1e9, "offset that ends the service; 0: none",
-                       kReferenceNtp),
-      number_parameter("min_poll", form.poll_min, 3, 17, "shortest poll interval, log2 s",
-                       poll_source),
-      not_below("min_poll", number_parameter("max_poll", form.poll_max, 3, 17,
-                                             "longest poll interval, log2 s", poll_source)),
-      flag_parameter("iburst", true, "a burst of eight exchanges while the server is not reached",
-                     "usual configuration (iburst)"),
-      choice_parameter("stamps", {"application", "kernel"},
-                       "t1 from before the send, or from the kernel where it stamps",
-                       "ntpd stamps in the application"),
-      number_parameter("broadcast_interval_s", 64, 8, 131072,
-                       "between broadcasts (broadcast modes only)", "RFC 5905 section 9.2"),
-      number_parameter("broadcast_delay_ms", 4, 0, 1e4,
-                       "broadcastdelay, the assumed round trip, of which half is added "
-                       "(ntp_broadcast_fixed only)",
-                       "ntpd's documentation, broadcastdelay (miscopt.html), for what it means; "
-                       "older documents of ntpd for 4 ms, 3 to 7 typical"),
-      number_parameter("service_hours", form.service_hours, 0, 1e4,
-                       "how long the service has run when the capture starts",
-                       "assumption: most of the start-up transient is over"),
-  };
-}
-
 // ntpd takes whole exponents only.
-int poll_of(const Parameters& parameters, const std::string& name) {
-  const double poll = parameters.number(name);
-  if (poll != std::floor(poll)) {
+ParameterBinder& bind_poll(ParameterBinder& parameters, const std::string& name, int& poll,
+                           const std::string& meaning) {
+  double exponent = poll;
+  parameters.number(name, exponent, 3, 17, meaning,
+                    "ntpd's documentation, minpoll and maxpoll (confopt.html): from 3 to 17, by "
+                    "default 6 and 10");
+  if (exponent != std::floor(exponent)) {
     throw ParameterError(
-        name, name + " is an exponent of 2 and must be whole, not " + std::to_string(poll));
+        name, name + " is an exponent of 2 and must be whole, not " + std::to_string(exponent));
   }
-  return static_cast<int>(poll);
+  poll = static_cast<int>(exponent);
+  return parameters;
 }
 
-HostSyncEntry ntp(const NtpForm& form) {
-  HostSyncEntry entry;
-  entry.info.name = form.name;
-  entry.info.family = form.family;
-  entry.info.summary = form.summary;
-  entry.info.source = "RFC 5905; docs/reference/host_sync.md section 2";
-  entry.info.parameters = ntp_parameters(form);
-  entry.make = [form](const Parameters& parameters) {
-    NtpSettings settings;
-    settings.mode = form.mode;
-    settings.reads_drift_file = form.reads_drift_file;
-    settings.discipline.loop = form.loop;
-    settings.discipline.step_s = parameters.number("step_ms") * 1e-3;
-    settings.discipline.step_out_s = parameters.number("step_out_s");
-    settings.discipline.panic_s = parameters.number("panic_s");
-    settings.discipline.poll_min = poll_of(parameters, "min_poll");
-    settings.discipline.poll_max = poll_of(parameters, "max_poll");
-    settings.initial_burst = parameters.flag("iburst");
-    settings.stamps = stamps_of(parameters);
-    settings.broadcast_interval = from_seconds(parameters.number("broadcast_interval_s"));
-    settings.broadcast_delay_s = parameters.number("broadcast_delay_ms") * 1e-3;
-    settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
-    return std::make_unique<NtpService>(settings);
-  };
-  return entry;
+}  // namespace
+
+void NtpSettings::bind(ParameterBinder& parameters) {
+  parameters.scaled("step_ms", discipline.step_s, 1e-3, 0, 1e6,
+                    "offset above which the clock is stepped; 0: never; 0 or above 500: ntpd's "
+                    "own loop instead of the kernel's",
+                    kReferenceNtp);
+  parameters.number("step_out_s", discipline.step_out_s, 300, 1e5,
+                    "how long such an offset must last, and how long the frequency is measured",
+                    "reference implementation, which takes no less than 300; RFC 5905: 900");
+  parameters.number("panic_s", discipline.panic_s, 0, 1e9, "offset that ends the service; 0: none",
+                    kReferenceNtp);
+  bind_poll(parameters, "min_poll", discipline.poll_min, "shortest poll interval, log2 s");
+  bind_poll(parameters, "max_poll", discipline.poll_max, "longest poll interval, log2 s")
+      .not_below("min_poll");
+  parameters.flag("iburst", initial_burst,
+                  "a burst of eight exchanges while the server is not reached",
+                  "usual configuration (iburst)");
+  parameters.choice("stamps", stamps,
+                    {{"application", NtpStamps::kApplication}, {"kernel", NtpStamps::kKernel}},
+                    "t1 from before the send, or from the kernel where it stamps",
+                    "ntpd stamps in the application");
+  parameters.number("broadcast_interval_s", broadcast_interval, 8, 131072,
+                    "between broadcasts (broadcast modes only)", "RFC 5905 section 9.2");
+  parameters.scaled("broadcast_delay_ms", broadcast_delay_s, 1e-3, 0, 1e4,
+                    "broadcastdelay, the assumed round trip, of which half is added "
+                    "(ntp_broadcast_fixed only)",
+                    "ntpd's documentation, broadcastdelay (miscopt.html), for what it means; "
+                    "older documents of ntpd for 4 ms, 3 to 7 typical");
+  parameters.number("service_hours", service_time, 0, 1e4,
+                    "how long the service has run when the capture starts",
+                    "assumption: most of the start-up transient is over");
+}
+
+namespace {
+
+// Forms of one family share the scenario's parameters.
+HostSyncEntry ntp(std::string name, std::string summary, const NtpSettings& settings,
+                  std::string family = "ntp") {
+  return with_settings<HostSyncEntry>({.name = std::move(name),
+                                       .family = std::move(family),
+                                       .summary = std::move(summary),
+                                       .source = "RFC 5905; docs/reference/host_sync.md section 2"},
+                                      settings, kMake<NtpService>);
 }
 
 }  // namespace
 
 std::vector<HostSyncEntry> host_sync_ntp() {
   return {
-      ntp({.name = "ntp",
-           .family = "ntp",
-           .summary = "ntpd as Linux runs it: clock filter, the kernel's PLL/FLL, adaptive poll"}),
-      ntp({.name = "ntp_first_run",
-           .family = "ntp",
-           .summary = "ntp on a host that has no drift file yet",
-           .reads_drift_file = false}),
-      ntp({.name = "ntp_lan",
-           .family = "ntp_lan",
-           .summary = "ntpd at its best on a LAN: ntp with polls of 8 and 16 s",
-           .poll_min = 3,
-           .poll_max = 4}),
-      ntp({.name = "ntp_daemon_loop",
-           .family = "ntp",
-           .summary = "ntpd with its own PLL/FLL, for a kernel without one (disable kernel)",
-           .loop = NtpLoop::kDaemon}),
-      ntp({.name = "ntp_broadcast_volley",
-           .family = "ntp",
-           .summary = "NTP broadcast, its delay calibrated by one volley of exchanges",
-           .mode = NtpMode::kBroadcastVolley,
-           .service_hours = 6}),
-      ntp({.name = "ntp_broadcast_fixed",
-           .family = "ntp",
-           .summary = "NTP broadcast with half of an assumed round trip",
-           .mode = NtpMode::kBroadcastFixed,
-           .service_hours = 6}),
+      ntp("ntp", "ntpd as Linux runs it: clock filter, the kernel's PLL/FLL, adaptive poll", {}),
+      ntp("ntp_first_run", "ntp on a host that has no drift file yet", {.reads_drift_file = false}),
+      ntp("ntp_lan", "ntpd at its best on a LAN: ntp with polls of 8 and 16 s",
+          {.discipline = {.poll_min = 3, .poll_max = 4}}, "ntp_lan"),
+      ntp("ntp_daemon_loop", "ntpd with its own PLL/FLL, for a kernel without one (disable kernel)",
+          {.discipline = {.loop = NtpLoop::kDaemon}}),
+      ntp("ntp_broadcast_volley", "NTP broadcast, its delay calibrated by one volley of exchanges",
+          {.mode = NtpMode::kBroadcastVolley, .service_time = from_ms(6 * 3600e3)}),
+      ntp("ntp_broadcast_fixed", "NTP broadcast with half of an assumed round trip",
+          {.mode = NtpMode::kBroadcastFixed, .service_time = from_ms(6 * 3600e3)}),
   };
 }
 

@@ -38,13 +38,13 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/ntp/ntp_association.h"
 #include "algorithms/host_sync/ntp/ntp_discipline.h"
-#include "algorithms/parameters.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/parameter_binder.h"
+#include "algorithms/ports/host.h"
 
 namespace simbench {
 
@@ -52,29 +52,21 @@ enum class NtpMode : std::uint8_t { kUnicast, kBroadcastVolley, kBroadcastFixed 
 
 struct NtpSettings {
   NtpMode mode = NtpMode::kUnicast;
-  NtpDisciplineSettings discipline;
+  NtpDisciplineSettings discipline{};
   NtpStamps stamps = NtpStamps::kApplication;
   bool initial_burst = true;
   bool reads_drift_file = true;
   Nanoseconds broadcast_interval = from_ms(64e3);
   double broadcast_delay_s = 0.004;  // round trip, of broadcast_fixed
   Nanoseconds service_time = from_ms(16 * 3600e3);
+
+  void bind(ParameterBinder& parameters);
 };
 
-class NtpService : public HostSync {
- public:
-  // In the broadcast modes the discipline's poll bounds are those of the interval.
-  explicit NtpService(const NtpSettings& settings);
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  NtpSettings settings_;
-};
-
-// For all algorithms that poll as NTP does: reads the parameter stamps, "application" or "kernel".
-NtpStamps stamps_of(const Parameters& parameters);
+Task<void> serve_ntpd(Host& host, std::vector<PeerId> slaves, NtpSettings settings);
+// In the broadcast modes the discipline's poll bounds are those of the interval.
+Task<void> follow_ntpd(Host& host, PeerId master, NtpSettings settings);
+using NtpService = ClockService<NtpSettings, serve_ntpd, follow_ntpd>;
 
 }  // namespace simbench
 

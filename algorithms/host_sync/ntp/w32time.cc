@@ -1,7 +1,6 @@
 #include "algorithms/host_sync/ntp/w32time.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -89,9 +88,9 @@ Task<void> W32TimeClient::run() {
 }
 
 Task<void> W32TimeClient::poll() {
-  for (std::uint32_t request = 1; request <= W32Time::kRequestLimit; ++request) {
+  for (std::uint32_t request = 1; request <= kW32TimeRequestLimit; ++request) {
     const std::optional<NtpMeasurement> reply =
-        co_await association_.exchange(W32Time::kReplyTimeout);
+        co_await association_.exchange(kW32TimeReplyTimeout);
     if (!reply) continue;
     const Nanoseconds offset = clock_offset(reply->t1, reply->t2, reply->t3, reply->t4);
     if (settings_.max_phase_correction && magnitude(offset) > *settings_.max_phase_correction) {
@@ -105,10 +104,10 @@ Task<void> W32TimeClient::poll() {
     outcome_.synchronised(request);
     co_return;
   }
-  outcome_.failed(W32Time::kRequestLimit, "no valid reply from time server " +
-                                              std::to_string(server_) + " to " +
-                                              std::to_string(W32Time::kRequestLimit) +
-                                              " requests; is it running and reachable?");
+  outcome_.failed(kW32TimeRequestLimit, "no valid reply from time server " +
+                                            std::to_string(server_) + " to " +
+                                            std::to_string(kW32TimeRequestLimit) +
+                                            " requests; is it running and reachable?");
 }
 
 Task<void> W32TimeClient::correct(Nanoseconds offset) {
@@ -170,78 +169,67 @@ double w32time_rate_change(Nanoseconds offset, Nanoseconds interval,
   return pll + offset_s * part / (kFllAverage * std::max(mu_s, kFllIntercept));
 }
 
-Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
+Task<void> serve_w32time(Host& host, std::vector<PeerId> slaves, W32TimeSettings /*settings*/) {
   co_await serve_ntp(host, std::move(slaves), kLocalClockDispersion);
 }
 
-Task<void> W32Time::run_slave(Host& host, PeerId master) {
-  W32TimeClient client(host, master, settings_);
+Task<void> follow_w32time(Host& host, PeerId master, W32TimeSettings settings) {
+  W32TimeClient client(host, master, settings);
   co_await client.run();
 }
 
 namespace {
 
-W32TimeRate rate_of(const Parameters& parameters) {
-  const std::string& choice = parameters.text("rate_correction");
-  if (choice == "pll") return W32TimeRate::kPll;
-  return choice == "held" ? W32TimeRate::kHeld : W32TimeRate::kHybrid;
+const char* const kW32TimeDocumentation =
+    "Microsoft documentation of W32Time (docs/reference/host_sync.md section 2)";
+
+}  // namespace
+
+void W32TimeSettings::bind(ParameterBinder& parameters) {
+  parameters.number("poll_interval_s", poll_interval, 16, 604800,
+                    "time between polls: SpecialPollInterval (MinPollInterval in a domain)",
+                    kW32TimeDocumentation);
+  parameters.number("phase_correct_rate", phase_correct_rate, 1, 1e3,
+                    "PhaseCorrectRate, divides the slew rate", kW32TimeDocumentation);
+  parameters.number("frequency_correct_rate", frequency_correct_rate, 1, 1e3,
+                    "FrequencyCorrectRate, divides the correction of the rate",
+                    kW32TimeDocumentation);
+  parameters.choice(
+      "rate_correction", rate,
+      {{"hybrid", W32TimeRate::kHybrid}, {"pll", W32TimeRate::kPll}, {"held", W32TimeRate::kHeld}},
+      "how the clock's rate is corrected after the hold, of which little is "
+      "documented: by PLL and FLL, by PLL, not at all",
+      "[MS-W32T] 2.2.7 and UDel TR 97-3, which it names; Microsoft, "
+      "FrequencyCorrectRate Entry, for the PLL");
+  parameters.number("max_allowed_phase_offset_s", max_allowed_phase_offset, 0, 1e6,
+                    "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
+                    kW32TimeDocumentation);
+  parameters.number("service_hours", service_time, 0, 1e4,
+                    "how long the service has run when the capture starts",
+                    "assumption: at least two polls");
+  parameters.number("start_spread_s", start_spread, 0, 1e6,
+                    "the services start at random times within this span",
+                    "assumption: one poll interval, so that the hosts' polls are spread evenly");
 }
+
+namespace {
 
 // w32time_domain is a family of its own: a scenario's parameters for a stand-alone machine are not
 // meant for it.
 HostSyncEntry w32time(const std::string& name, std::string summary,
-                      const W32TimeSettings& defaults) {
-  const std::string documentation =
-      "Microsoft documentation of W32Time (docs/reference/host_sync.md section 2)";
-  HostSyncEntry entry;
-  entry.info.name = name;
-  entry.info.family = name;
-  entry.info.summary = std::move(summary);
-  entry.info.source = documentation + "; RFC 4330";
-  entry.info.parameters = {
-      number_parameter("poll_interval_s", to_seconds(defaults.poll_interval), 16, 604800,
-                       "time between polls: SpecialPollInterval (MinPollInterval in a domain)",
-                       documentation),
-      number_parameter("phase_correct_rate", defaults.phase_correct_rate, 1, 1e3,
-                       "PhaseCorrectRate, divides the slew rate", documentation),
-      number_parameter("frequency_correct_rate", defaults.frequency_correct_rate, 1, 1e3,
-                       "FrequencyCorrectRate, divides the correction of the rate", documentation),
-      choice_parameter("rate_correction", {"hybrid", "pll", "held"},
-                       "how the clock's rate is corrected after the hold, of which little is "
-                       "documented: by PLL and FLL, by PLL, not at all",
-                       "[MS-W32T] 2.2.7 and UDel TR 97-3, which it names; Microsoft, "
-                       "FrequencyCorrectRate Entry, for the PLL"),
-      number_parameter("max_allowed_phase_offset_s", to_seconds(defaults.max_allowed_phase_offset),
-                       0, 1e6, "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
-                       documentation),
-      number_parameter("service_hours", to_seconds(defaults.service_time) / 3600, 0, 1e4,
-                       "how long the service has run when the capture starts",
-                       "assumption: at least two polls"),
-      number_parameter("start_spread_s", to_seconds(defaults.start_spread), 0, 1e6,
-                       "the services start at random times within this span",
-                       "assumption: one poll interval, so that the hosts' polls are spread evenly"),
-  };
-  entry.make = [defaults](const Parameters& parameters) {
-    W32TimeSettings settings = defaults;
-    settings.poll_interval = from_seconds(parameters.number("poll_interval_s"));
-    settings.phase_correct_rate = parameters.number("phase_correct_rate");
-    settings.frequency_correct_rate = parameters.number("frequency_correct_rate");
-    settings.rate = rate_of(parameters);
-    settings.max_allowed_phase_offset =
-        from_seconds(parameters.number("max_allowed_phase_offset_s"));
-    settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
-    settings.start_spread = from_seconds(parameters.number("start_spread_s"));
-    return std::make_unique<W32Time>(settings);
-  };
-  return entry;
+                      const W32TimeSettings& settings) {
+  return with_settings<HostSyncEntry>({.name = name,
+                                       .family = name,
+                                       .summary = std::move(summary),
+                                       .source = std::string(kW32TimeDocumentation) + "; RFC 4330"},
+                                      settings, kMake<W32Time>);
 }
 
 }  // namespace
 
 std::vector<HostSyncEntry> host_sync_w32time() {
   return {
-      w32time("w32time", "SNTP in the manner of stand-alone Windows Time, as documented",
-              W32TimeSettings{}),
+      w32time("w32time", "SNTP in the manner of stand-alone Windows Time, as documented", {}),
       w32time("w32time_domain",
               "SNTP in the manner of Windows Time on a member of a domain, as documented",
               w32time_domain_settings()),

@@ -6,8 +6,8 @@
 //
 // The master serves as a local reference of stratum 1 (ntp_association.h). Each slave is a client
 // (NTPv3): first after a random part of start_spread, then every poll_interval, it makes one
-// exchange. A request without a valid reply within kReplyTimeout is repeated, kRequestLimit times
-// in all; then the client waits for the next poll.
+// exchange. A request without a valid reply within kW32TimeReplyTimeout is repeated, kRequestLimit
+// times in all; then the client waits for the next poll.
 //
 // Phase (Microsoft, "Windows Time service tools and settings"): with
 //
@@ -35,7 +35,9 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/host_sync/clock_service.h"
+#include "algorithms/parameter_binder.h"
+#include "algorithms/ports/host.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench {
@@ -89,6 +91,8 @@ struct W32TimeSettings {
   Nanoseconds start_spread = from_ms(32768e3);
   // MaxPosPhaseCorrection and MaxNegPhaseCorrection; nothing: any offset is corrected.
   std::optional<Nanoseconds> max_phase_correction = from_ms(54000e3);
+
+  void bind(ParameterBinder& parameters);
 };
 
 // The defaults of a member of a domain: MinPollInterval 10, PhaseCorrectRate 1,
@@ -123,19 +127,12 @@ inline constexpr double kW32TimeMaxRate = 2.5e-3;
 double w32time_rate_change(Nanoseconds offset, Nanoseconds interval,
                            const W32TimeSettings& settings);
 
-class W32Time : public HostSync {
- public:
-  static constexpr Nanoseconds kReplyTimeout{1'000'000'000};
-  static constexpr std::uint32_t kRequestLimit = 4;
+inline constexpr Nanoseconds kW32TimeReplyTimeout{1'000'000'000};
+inline constexpr std::uint32_t kW32TimeRequestLimit = 4;
 
-  explicit W32Time(W32TimeSettings settings) : settings_(settings) {}
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  W32TimeSettings settings_;
-};
+Task<void> serve_w32time(Host& host, std::vector<PeerId> slaves, W32TimeSettings settings);
+Task<void> follow_w32time(Host& host, PeerId master, W32TimeSettings settings);
+using W32Time = ClockService<W32TimeSettings, serve_w32time, follow_w32time>;
 
 }  // namespace simbench
 

@@ -29,12 +29,12 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/ptp/ptp_servo.h"
 #include "algorithms/host_sync/stamps.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/ports/host.h"
 
 namespace simbench {
 
@@ -51,18 +51,13 @@ struct PtpSettings {
   // Of the port's servo and of phc2sys; the interval is theirs.
   ServoSettings servo_limits{.max_frequency_ppb = 500e3};
   Nanoseconds patience = from_ms(30e3);  // beyond what the servo needs for its first frequency
+
+  void bind(ParameterBinder& parameters);
 };
 
-class Ptp : public HostSync {
- public:
-  explicit Ptp(PtpSettings settings) : settings_(settings) {}
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  PtpSettings settings_;
-};
+Task<void> serve_ptp(Host& host, std::vector<PeerId> slaves, PtpSettings settings);
+Task<void> follow_ptp(Host& host, PeerId master, PtpSettings settings);
+using Ptp = ClockService<PtpSettings, serve_ptp, follow_ptp>;
 
 }  // namespace simbench
 

@@ -1,5 +1,9 @@
 #include "algorithms/host_sync/ptp/ptp_clocks.h"
 
+#include <utility>
+
+#include "algorithms/host_sync/join.h"
+
 namespace simbench {
 namespace {
 
@@ -94,6 +98,20 @@ Task<void> keep_coupled(Host& host, ClockKind follower, ServoSettings settings,
     *is_locked = coupling.is_locked();
     co_await host.sleep_for(ClockCoupling::kInterval);
   }
+}
+
+Task<void> serve_slaves(Host& host, std::vector<PeerId> slaves, StampSource stamps,
+                        ServoSettings settings, ServeSlave serve) {
+  const bool needs_card = stamps == StampSource::kCard;
+  if (needs_card && host.hardware_clock() == nullptr) co_return;
+  auto is_ready = std::make_shared<bool>(!needs_card);
+  std::vector<Task<void>> tasks;
+  tasks.reserve(slaves.size() + 1);
+  for (const PeerId slave : slaves) tasks.push_back(serve(slave, is_ready));
+  if (needs_card) {
+    tasks.push_back(keep_coupled(host, ClockKind::kHardware, settings, is_ready));
+  }
+  co_await join_all(std::move(tasks));
 }
 
 }  // namespace simbench

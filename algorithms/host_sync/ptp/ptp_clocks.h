@@ -10,7 +10,9 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "algorithms/host_sync/ptp/ptp_servo.h"
 #include "algorithms/host_sync/stamps.h"
@@ -57,6 +59,14 @@ class ClockCoupling {
 // Updates for ever, every kInterval; *is_locked says whether the clocks agree.
 Task<void> keep_coupled(Host& host, ClockKind follower, ServoSettings settings,
                         std::shared_ptr<bool> is_locked);
+
+// The master's side of a protocol whose clocks these are: serve(slave, is_ready) towards each
+// slave, at the same time. *is_ready once the clock that stamps agrees with the system clock, which
+// the network card's follows here. A host that lacks a card for its stamps serves nobody: its
+// slaves will report that nothing came.
+using ServeSlave = std::function<Task<void>(PeerId slave, std::shared_ptr<const bool> is_ready)>;
+Task<void> serve_slaves(Host& host, std::vector<PeerId> slaves, StampSource stamps,
+                        ServoSettings settings, ServeSlave serve);
 
 // The narrowest of ClockCoupling::kCrossStamps readings. The host must have a hardware clock.
 Task<CrossStamp> narrowest_cross_stamp(Host& host);

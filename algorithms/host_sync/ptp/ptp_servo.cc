@@ -194,4 +194,14 @@ ServoAnswer LinearRegressionServo::sample(double offset_ns, std::int64_t local_n
   return {.ppb = -frequency_ppb_, .state = is_far ? ServoState::kJump : ServoState::kLocked};
 }
 
+void ServoSettings::bind_first_step(ParameterBinder& parameters, const char* source) {
+  parameters.scaled("first_step_threshold_us", first_step_threshold_ns, 1e3, 0, 1e12,
+                    "the first correction is a step above this; 0: never", source);
+}
+
+void ServoSettings::bind_max_frequency(ParameterBinder& parameters) {
+  parameters.scaled("max_frequency_ppm", max_frequency_ppb, 1e3, 1, 4e5,
+                    "largest correction of a frequency", "adjtimex(2)");
+}
+
 }  // namespace simbench

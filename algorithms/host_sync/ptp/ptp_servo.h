@@ -37,6 +37,8 @@
 #include <deque>
 #include <memory>
 
+#include "algorithms/parameter_binder.h"
+
 namespace simbench {
 
 enum class ServoState : std::uint8_t { kUnlocked, kJump, kLocked };
@@ -51,6 +53,9 @@ struct ServoSettings {
   double max_frequency_ppb = 9e8;
   double first_step_threshold_ns = 20'000;  // 0: never
   double step_threshold_ns = 0;             // 0: never
+
+  void bind_first_step(ParameterBinder& parameters, const char* source);
+  void bind_max_frequency(ParameterBinder& parameters);
 };
 
 class Servo {

@@ -1,12 +1,10 @@
 #include "algorithms/host_sync/ptp/sptp.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/host_sync/ptp/ptp_clocks.h"
 #include "algorithms/host_sync/ptp/ptp_message.h"
@@ -18,8 +16,8 @@ namespace {
 // Before the servo has its first frequency.
 constexpr int kStartUpExchanges = 5;
 
-Task<void> serve_sptp(Host& host, PeerId client, StampSource source,
-                      std::shared_ptr<const bool> is_ready) {
+Task<void> serve_sptp_client(Host& host, PeerId client, StampSource source,
+                             std::shared_ptr<const bool> is_ready) {
   MessageStamps stamps(host, source);
   MessageChannel& channel = host.open_channel(client, Transport::kDatagram);
   while (stamps.lacking().empty()) {
@@ -199,93 +197,61 @@ class SptpClient {
 
 }  // namespace
 
-Task<void> Sptp::run_master(Host& host, std::vector<PeerId> slaves) {
-  const bool needs_card = settings_.stamps == StampSource::kCard;
-  // The slaves will report that nothing came.
-  if (needs_card && host.hardware_clock() == nullptr) co_return;
-  auto is_ready = std::make_shared<bool>(!needs_card);
-  std::vector<Task<void>> tasks;
-  tasks.reserve(slaves.size() + 1);
-  for (const PeerId slave : slaves) {
-    tasks.push_back(serve_sptp(host, slave, settings_.stamps, is_ready));
-  }
-  if (needs_card) {
-    tasks.push_back(keep_coupled(host, ClockKind::kHardware, settings_.servo_limits, is_ready));
-  }
-  co_await join_all(std::move(tasks));
+Task<void> serve_sptp(Host& host, std::vector<PeerId> clients, SptpSettings settings) {
+  const auto serve = [&host, settings](PeerId client, std::shared_ptr<const bool> is_ready) {
+    return serve_sptp_client(host, client, settings.stamps, std::move(is_ready));
+  };
+  return serve_slaves(host, std::move(clients), settings.stamps, settings.servo_limits, serve);
 }
 
-Task<void> Sptp::run_slave(Host& host, PeerId master) {
-  SptpClient client(host, master, settings_);
+Task<void> follow_sptp(Host& host, PeerId server, SptpSettings settings) {
+  SptpClient client(host, server, settings);
   co_await client.run();
+}
+
+void SptpSettings::bind(ParameterBinder& parameters) {
+  const char* const by_default = "facebook/time, ptp/sptp/client/config.go: default";
+  const char* const example = "facebook/time, ptp/sptp/README.md: its example";
+  bind_warm_up(parameters, service_time);
+  parameters.log2_seconds("log_interval", interval, -7, 12,
+                          "log2 of the seconds between two exchanges", by_default);
+  parameters.number("exchange_timeout_ms", exchange_timeout, 1, 1e6,
+                    "an exchange that takes longer (or half of the interval) is lost", by_default);
+  parameters.number("path_delay_filter_length", path_delay.length, 1, 1e4,
+                    "path delays of the median", example);
+  parameters.number("discard_below_us", path_delay.discard_below, 0, 1e6,
+                    "shorter path delays are discarded",
+                    "assumption: 0; the README's example has 2, its network's least delay");
+  parameters.number("discard_from_us", path_delay.discard_from, 0, 1e6,
+                    "longer path delays are discarded if they exceed the multiple", example);
+  parameters.number("discard_multiplier", path_delay.multiplier, 2, 1e6, "of the path delay",
+                    example);
+  servo_limits.bind_first_step(parameters, "facebook/time, servo/servo.go; its example has 1 s");
+  servo_limits.bind_max_frequency(parameters);
+  bind_software_stamps(parameters, stamps);
 }
 
 namespace {
 
-const char* const kSptpDefault = "facebook/time, ptp/sptp/client/config.go: default";
-const char* const kSptpExample = "facebook/time, ptp/sptp/README.md: its example";
-
-std::vector<ParameterSpec> sptp_parameters(bool has_hardware_stamps) {
-  std::vector<ParameterSpec> specs = {
-      number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
-                       kAssumption),
-      number_parameter("log_interval", 0, -7, 12, "log2 of the seconds between two exchanges",
-                       kSptpDefault),
-      number_parameter("exchange_timeout_ms", 100, 1, 1e6,
-                       "an exchange that takes longer (or half of the interval) is lost",
-                       kSptpDefault),
-      number_parameter("path_delay_filter_length", 59, 1, 1e4, "path delays of the median",
-                       kSptpExample),
-      number_parameter("discard_below_us", 0, 0, 1e6, "shorter path delays are discarded",
-                       "assumption: 0; the README's example has 2, its network's least delay"),
-      number_parameter("discard_from_us", 20, 0, 1e6,
-                       "longer path delays are discarded if they exceed the multiple",
-                       kSptpExample),
-      number_parameter("discard_multiplier", 3, 2, 1e6, "of the path delay", kSptpExample),
-      number_parameter("first_step_threshold_us", 20, 0, 1e12,
-                       "the first correction is a step above this; 0: never",
-                       "facebook/time, servo/servo.go; its example has 1 s"),
-      number_parameter("max_frequency_ppm", 500, 1, 4e5, "largest correction of a frequency",
-                       "adjtimex(2)"),
-  };
-  if (!has_hardware_stamps) specs.push_back(software_stamps_parameter());
-  return specs;
-}
-
-HostSyncEntry sptp(std::string name, std::string summary, bool has_hardware_stamps) {
-  HostSyncEntry entry;
-  entry.info.name = std::move(name);
-  entry.info.family = "sptp";
-  entry.info.summary = std::move(summary);
-  entry.info.source = "facebook/time, ptp/sptp (docs/reference/host_sync.md section 1)";
-  entry.info.parameters = sptp_parameters(has_hardware_stamps);
-  if (has_hardware_stamps) entry.info.needs = {Need::kHardwareStamps};
-  entry.make = [has_hardware_stamps](const Parameters& parameters) {
-    SptpSettings settings;
-    settings.stamps = has_hardware_stamps ? StampSource::kCard : software_stamps(parameters);
-    settings.service_time = from_seconds(parameters.number("warm_up_s"));
-    settings.interval = from_seconds(std::exp2(parameters.number("log_interval")));
-    settings.exchange_timeout = from_ms(parameters.number("exchange_timeout_ms"));
-    settings.path_delay.length =
-        static_cast<std::size_t>(parameters.number("path_delay_filter_length"));
-    settings.path_delay.discard_below = from_us(parameters.number("discard_below_us"));
-    settings.path_delay.discard_from = from_us(parameters.number("discard_from_us"));
-    settings.path_delay.multiplier = parameters.number("discard_multiplier");
-    settings.servo_limits.first_step_threshold_ns =
-        parameters.number("first_step_threshold_us") * 1e3;
-    settings.servo_limits.max_frequency_ppb = parameters.number("max_frequency_ppm") * 1e3;
-    return std::make_unique<Sptp>(settings);
-  };
-  return entry;
+HostSyncEntry sptp(std::string name, std::string summary, StampSource stamps) {
+  return with_settings<HostSyncEntry>(
+      {.name = std::move(name),
+       .family = "sptp",
+       .summary = std::move(summary),
+       .source = "facebook/time, ptp/sptp (docs/reference/host_sync.md section 1)",
+       .needs = needs_of(stamps)},
+      SptpSettings{.stamps = stamps}, kMake<Sptp>);
 }
 
 }  // namespace
 
 std::vector<HostSyncEntry> host_sync_sptp() {
   return {
-      sptp("sptp_software", "SPTP with software stamps: the client asks, once a second", false),
+      sptp("sptp_software", "SPTP with software stamps: the client asks, once a second",
+           StampSource::kKernel),
       sptp("sptp_hardware",
-           "SPTP with the network cards' stamps and clocks: the client asks, then phc2sys", true),
+           "SPTP with the network cards' stamps and clocks: the client asks, then phc2sys",
+           StampSource::kCard),
   };
 }
 

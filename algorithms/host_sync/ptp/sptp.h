@@ -23,12 +23,12 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_H_
 
-#include <optional>
 #include <vector>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/ptp/sptp_servo.h"
 #include "algorithms/host_sync/stamps.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/ports/host.h"
 
 namespace simbench {
 
@@ -41,18 +41,13 @@ struct SptpSettings {
   // Of the client's servo and of phc2sys; the interval is theirs.
   ServoSettings servo_limits{.max_frequency_ppb = 500e3};
   Nanoseconds patience = from_ms(30e3);
+
+  void bind(ParameterBinder& parameters);
 };
 
-class Sptp : public HostSync {
- public:
-  explicit Sptp(SptpSettings settings) : settings_(settings) {}
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  SptpSettings settings_;
-};
+Task<void> serve_sptp(Host& host, std::vector<PeerId> clients, SptpSettings settings);
+Task<void> follow_sptp(Host& host, PeerId server, SptpSettings settings);
+using Sptp = ClockService<SptpSettings, serve_sptp, follow_sptp>;
 
 }  // namespace simbench
 

@@ -138,32 +138,27 @@ Task<void> CommonView::run_slave(Host& host, PeerId master) {
   co_await slave.run();
 }
 
+void CommonViewSettings::bind(ParameterBinder& parameters) {
+  two_way.bind(parameters, hull);
+  parameters.number("pulse_window_s", pulses.window, 1, 1e5, "span of the pulses that are compared",
+                    kAssumption);
+  parameters.number("settle_s", pulses.settle, 0, 1e5,
+                    "frames of a camera's first seconds that are left out",
+                    "docs/reference/paper.md section 8: the first 5 s are unsteady");
+}
+
 namespace {
 
 HostSyncEntry common_view(std::string name, std::string summary, std::string source,
                           PulseSource pulses, Need need) {
-  HostSyncEntry entry;
-  entry.info.name = std::move(name);
-  entry.info.family = "common_view";
-  entry.info.summary = std::move(summary);
-  entry.info.source = std::move(source);
-  entry.info.needs = {need};
-  entry.info.parameters = two_way_parameters();
-  entry.info.parameters.push_back(number_parameter(
-      "pulse_window_s", 60, 1, 1e5, "span of the pulses that are compared", kAssumption));
-  entry.info.parameters.push_back(number_parameter(
-      "settle_s", 5, 0, 1e5, "frames of a camera's first seconds that are left out",
-      "docs/reference/paper.md section 8: the first 5 s are unsteady"));
-  entry.make = [pulses](const Parameters& parameters) {
-    CommonViewSettings settings;
-    settings.two_way = two_way_settings(parameters);
-    settings.hull = two_way_hull_settings(parameters);
-    settings.pulses.source = pulses;
-    settings.pulses.window = from_seconds(parameters.number("pulse_window_s"));
-    settings.pulses.settle = from_seconds(parameters.number("settle_s"));
-    return std::make_unique<CommonView>(settings);
-  };
-  return entry;
+  return with_settings<HostSyncEntry>(
+      {.name = std::move(name),
+       .family = "common_view",
+       .summary = std::move(summary),
+       .source = std::move(source),
+       .needs = {need}},
+      CommonViewSettings{.two_way = {}, .hull = {}, .pulses = {.source = pulses}},
+      kMake<CommonView>);
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ struct CommonViewSettings {
   TwoWaySettings two_way;
   TwoWayHull::Settings hull;
   PulseObserver::Settings pulses;
+
+  void bind(ParameterBinder& parameters);
 };
 
 // c and its standard deviation.

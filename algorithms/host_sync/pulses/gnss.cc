@@ -1,8 +1,6 @@
 #include "algorithms/host_sync/pulses/gnss.h"
 
 #include <cmath>
-#include <memory>
-#include <string>
 #include <utility>
 
 #include "algorithms/host_sync/outcome.h"
@@ -13,6 +11,8 @@ namespace {
 
 // No oscillator is so far off: the stamps are wrong.
 constexpr double kMostSlope = 1e-3;
+// A line without a pulse for so long has none.
+constexpr Nanoseconds kGnssPatience{10'000'000'000};
 
 // Without `outcome` for the master, whose own clock is nobody's outcome.
 Task<void> follow(Host& host, GnssSettings settings, std::optional<OutcomeReport> outcome) {
@@ -25,7 +25,7 @@ Task<void> follow(Host& host, GnssSettings settings, std::optional<OutcomeReport
   GnssEstimator estimator(settings.window);
   while (true) {
     const std::optional<PulseStamp> pulse =
-        co_await input->next(host.steady_clock().now() + Gnss::kPatience);
+        co_await input->next(host.steady_clock().now() + kGnssPatience);
     if (!pulse || !pulse->gnss) {
       const char* const why = pulse
                                   ? "the receiver sends no time with its pulses (PulseStamp::gnss)"
@@ -75,42 +75,29 @@ std::optional<ClockLine> GnssEstimator::line() const {
                    .rate_ppb = (1 / (1 + slope) - 1) * 1e9};
 }
 
-Task<void> Gnss::run_master(Host& host, std::vector<PeerId> /*slaves*/) {
-  co_await follow(host, settings_, std::nullopt);
+Task<void> serve_gnss(Host& host, std::vector<PeerId> /*slaves*/, GnssSettings settings) {
+  co_await follow(host, settings, std::nullopt);
 }
 
-Task<void> Gnss::run_slave(Host& host, PeerId /*master*/) {
-  co_await follow(host, settings_, OutcomeReport(host));
+Task<void> follow_gnss(Host& host, PeerId /*master*/, GnssSettings settings) {
+  co_await follow(host, settings, OutcomeReport(host));
 }
 
-namespace {
-
-HostSyncEntry gnss() {
-  HostSyncEntry entry;
-  entry.info.name = "gnss";
-  entry.info.family = "gnss";
-  entry.info.summary = "every host, the master too, follows a GNSS receiver of its own";
-  entry.info.source = "PPS and time of day of a receiver; theory";
-  entry.info.needs = {Need::kPps, Need::kGnss};
-  entry.info.parameters = {
-      number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
-                       "assumption"),
-      number_parameter("window_s", 60, 4, 1e5, "span of the pulses that the line is fitted to",
-                       "assumption: short against the wander of a quartz"),
-  };
-  append_steering_parameters(entry.info.parameters);
-  entry.make = [](const Parameters& parameters) {
-    GnssSettings settings;
-    settings.service_time = from_seconds(parameters.number("warm_up_s"));
-    settings.window = from_seconds(parameters.number("window_s"));
-    settings.steering = steering_settings(parameters);
-    return std::make_unique<Gnss>(settings);
-  };
-  return entry;
+void GnssSettings::bind(ParameterBinder& parameters) {
+  bind_warm_up(parameters, service_time);
+  parameters.number("window_s", window, 4, 1e5, "span of the pulses that the line is fitted to",
+                    "assumption: short against the wander of a quartz");
+  steering.bind(parameters);
 }
 
-}  // namespace
-
-std::vector<HostSyncEntry> host_sync_gnss() { return {gnss()}; }
+std::vector<HostSyncEntry> host_sync_gnss() {
+  return {with_settings<HostSyncEntry>(
+      {.name = "gnss",
+       .family = "gnss",
+       .summary = "every host, the master too, follows a GNSS receiver of its own",
+       .source = "PPS and time of day of a receiver; theory",
+       .needs = {Need::kPps, Need::kGnss}},
+      GnssSettings{}, kMake<Gnss>)};
+}
 
 }  // namespace simbench

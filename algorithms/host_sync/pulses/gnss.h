@@ -15,9 +15,10 @@
 #include <optional>
 #include <vector>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/clock_steering.h"
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
-#include "algorithms/ports/host_sync.h"
+#include "algorithms/ports/host.h"
 #include "laws/lower_hull.h"
 
 namespace simbench {
@@ -25,7 +26,9 @@ namespace simbench {
 struct GnssSettings {
   Nanoseconds service_time = from_ms(60e3);  // before the capture
   Nanoseconds window = from_ms(60e3);
-  SteeringSettings steering;
+  SteeringSettings steering{};
+
+  void bind(ParameterBinder& parameters);
 };
 
 // GNSS time over a steady clock, from pulses that are seen late. Only computes.
@@ -49,18 +52,9 @@ class GnssEstimator {
   std::size_t pulses_ = 0;
 };
 
-class Gnss : public HostSync {
- public:
-  static constexpr Nanoseconds kPatience{10'000'000'000};
-
-  explicit Gnss(GnssSettings settings) : settings_(settings) {}
-  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
-  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
-  Task<void> run_slave(Host& host, PeerId master) override;
-
- private:
-  GnssSettings settings_;
-};
+Task<void> serve_gnss(Host& host, std::vector<PeerId> slaves, GnssSettings settings);
+Task<void> follow_gnss(Host& host, PeerId master, GnssSettings settings);
+using Gnss = ClockService<GnssSettings, serve_gnss, follow_gnss>;
 
 }  // namespace simbench
 

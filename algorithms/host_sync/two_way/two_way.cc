@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/host_sync/clock_service.h"
 #include "algorithms/host_sync/join.h"
 #include "algorithms/registry.h"
 
@@ -191,140 +192,114 @@ Task<Nanoseconds> TwoWaySlave::turn() {
   co_return is_burst ? settings_.burst_interval : settings_.interval;
 }
 
-std::vector<ParameterSpec> two_way_parameters() {
-  std::vector<ParameterSpec> specs = {
-      number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
-                       kAssumption),
-      number_parameter("exchanges", 16, 1, 1e5,
-                       "exchanges of the first burst, and of each round whose minimum is taken",
-                       kAssumption),
-      number_parameter("burst_interval_ms", 20, 0.1, 1e5, "pace of the first burst", kAssumption),
-      number_parameter("interval_ms", 250, 0.1, 1e6, "pace after it, also during the capture",
-                       "assumption: 240 exchanges in the window"),
-      number_parameter("window_s", 60, 1, 1e5, "span of the hulls and of the estimate of the rate",
-                       "assumption: short against the wander of a quartz"),
-      number_parameter("max_rate_ppm", 500, 1, 1e4, "largest rate between two hosts",
-                       "the limit of adjtimex(2)"),
-  };
-  append_steering_parameters(specs);
-  return specs;
-}
-
-TwoWaySettings two_way_settings(const Parameters& parameters) {
-  TwoWaySettings settings;
-  settings.service_time = from_seconds(parameters.number("warm_up_s"));
-  settings.exchanges = static_cast<std::size_t>(parameters.number("exchanges"));
-  settings.burst_interval = from_ms(parameters.number("burst_interval_ms"));
-  settings.interval = from_ms(parameters.number("interval_ms"));
-  settings.steering = steering_settings(parameters);
-  settings.steer_interval = settings.steering.settle;
-  return settings;
-}
-
-TwoWayHull::Settings two_way_hull_settings(const Parameters& parameters) {
-  TwoWayHull::Settings settings;
-  settings.window = from_seconds(parameters.number("window_s"));
-  settings.max_rate_ppm = parameters.number("max_rate_ppm");
-  return settings;
+void TwoWaySettings::bind(ParameterBinder& parameters, TwoWayHull::Settings& estimator) {
+  bind_warm_up(parameters, service_time);
+  parameters.number("exchanges", exchanges, 1, 1e5,
+                    "exchanges of the first burst, and of each round whose minimum is taken",
+                    kAssumption);
+  parameters.number("burst_interval_ms", burst_interval, 0.1, 1e5, "pace of the first burst",
+                    kAssumption);
+  parameters.number("interval_ms", interval, 0.1, 1e6, "pace after it, also during the capture",
+                    "assumption: 240 exchanges in the window");
+  parameters.number("window_s", estimator.window, 1, 1e5,
+                    "span of the hulls and of the estimate of the rate",
+                    "assumption: short against the wander of a quartz");
+  parameters.number("max_rate_ppm", estimator.max_rate_ppm, 1, 1e4,
+                    "largest rate between two hosts", "the limit of adjtimex(2)");
+  steering.bind(parameters);
+  steer_interval = steering.settle;
 }
 
 namespace {
 
-enum class Estimator { kRoundTrip, kIndependentMinima, kHull };
+// The estimator of a registered form: a hull, or a minimum of that kind.
+struct TwoWayForm {
+  TwoWaySettings two_way;
+  TwoWayHull::Settings hull;
+  std::optional<TwoWayMinimum::Kind> minimum;
+
+  void bind(ParameterBinder& parameters) { two_way.bind(parameters, hull); }
+};
+
+std::unique_ptr<HostSync> make_two_way(const TwoWayForm& form) {
+  if (!form.minimum) {
+    return std::make_unique<TwoWay>(
+        form.two_way, [settings = form.hull] { return std::make_unique<TwoWayHull>(settings); });
+  }
+  const TwoWayMinimum::Settings settings{.kind = *form.minimum,
+                                         .exchanges = form.two_way.exchanges,
+                                         .window = form.hull.window,
+                                         .max_rate_ppm = form.hull.max_rate_ppm};
+  return std::make_unique<TwoWay>(form.two_way,
+                                  [settings] { return std::make_unique<TwoWayMinimum>(settings); });
+}
+
+HostSyncEntry two_way(std::string name, std::string summary, std::string source,
+                      std::optional<TwoWayMinimum::Kind> minimum, bool is_naive) {
+  return with_settings<HostSyncEntry>(
+      {.name = std::move(name),
+       .family = "two_way",
+       .summary = std::move(summary),
+       .source = std::move(source)},
+      TwoWayForm{.two_way = {.is_naive = is_naive}, .hull = {}, .minimum = minimum}, make_two_way);
+}
 
 const char* const kSoftwareSync =
     "google-research/libsoftwaresync, SyncConstants.java and SimpleNetworkTimeProtocol.java";
 
-TwoWay::MakeEstimator hull_of(const Parameters& parameters) {
-  const TwoWayHull::Settings settings = two_way_hull_settings(parameters);
-  return [settings] { return std::make_unique<TwoWayHull>(settings); };
-}
+struct SoftwareSync {
+  TwoWaySettings two_way{
+      .is_naive = true, .exchanges = 0, .interval = from_ms(10), .round_pause = from_seconds(10)};
+  std::size_t exchanges = 300;
+  Nanoseconds early_stop = from_ms(1);
 
-TwoWay::MakeEstimator minimum_of(const Parameters& parameters, TwoWayMinimum::Kind kind) {
-  TwoWayMinimum::Settings settings;
-  settings.kind = kind;
-  settings.exchanges = static_cast<std::size_t>(parameters.number("exchanges"));
-  settings.window = from_seconds(parameters.number("window_s"));
-  settings.max_rate_ppm = parameters.number("max_rate_ppm");
-  return [settings] { return std::make_unique<TwoWayMinimum>(settings); };
-}
+  void bind(ParameterBinder& parameters) {
+    bind_warm_up(parameters, two_way.service_time);
+    parameters.number("exchanges", exchanges, 1, 1e5, "most exchanges of a round", kSoftwareSync);
+    parameters.number("early_stop_ms", early_stop, 0, 1e5, "a round trip below this ends the round",
+                      kSoftwareSync);
+    parameters.number("interval_ms", two_way.interval, 0.1, 1e6, "pace within a round",
+                      kAssumption);
+    parameters.number("round_pause_s", two_way.round_pause, 0.1, 1e6,
+                      "time from one round to the next", kAssumption);
+    two_way.steering.bind(parameters);
+    two_way.steer_interval = Nanoseconds(0);
+  }
+};
 
-HostSyncEntry two_way(std::string name, std::string summary, std::string source,
-                      Estimator estimator, bool is_naive) {
-  HostSyncEntry entry;
-  entry.info.name = std::move(name);
-  entry.info.family = "two_way";
-  entry.info.summary = std::move(summary);
-  entry.info.source = std::move(source);
-  entry.info.parameters = two_way_parameters();
-  entry.make = [estimator, is_naive](const Parameters& parameters) {
-    TwoWaySettings settings = two_way_settings(parameters);
-    settings.is_naive = is_naive;
-    if (estimator == Estimator::kHull) {
-      return std::make_unique<TwoWay>(settings, hull_of(parameters));
-    }
-    const auto kind = estimator == Estimator::kRoundTrip ? TwoWayMinimum::Kind::kRoundTrip
-                                                         : TwoWayMinimum::Kind::kIndependent;
-    return std::make_unique<TwoWay>(settings, minimum_of(parameters, kind));
-  };
-  return entry;
-}
-
-HostSyncEntry libsoftwaresync() {
-  HostSyncEntry entry;
-  entry.info.name = "libsoftwaresync";
-  entry.info.family = "libsoftwaresync";
-  entry.info.summary =
-      "best of up to 300 naive round trips, but stops at the first below 1 ms; offset only";
-  entry.info.source = kSoftwareSync;
-  entry.info.parameters = {
-      number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
-                       kAssumption),
-      number_parameter("exchanges", 300, 1, 1e5, "most exchanges of a round", kSoftwareSync),
-      number_parameter("early_stop_ms", 1, 0, 1e5, "a round trip below this ends the round",
-                       kSoftwareSync),
-      number_parameter("interval_ms", 10, 0.1, 1e6, "pace within a round", kAssumption),
-      number_parameter("round_pause_s", 10, 0.1, 1e6, "time from one round to the next",
-                       kAssumption),
-  };
-  append_steering_parameters(entry.info.parameters);
-  entry.make = [](const Parameters& parameters) {
-    TwoWaySettings settings;
-    settings.service_time = from_seconds(parameters.number("warm_up_s"));
-    settings.is_naive = true;
-    settings.exchanges = 0;
-    settings.interval = from_ms(parameters.number("interval_ms"));
-    settings.round_pause = from_seconds(parameters.number("round_pause_s"));
-    settings.steering = steering_settings(parameters);
-    settings.steer_interval = Nanoseconds(0);
-    TwoWayMinimum::Settings minimum;
-    minimum.exchanges = static_cast<std::size_t>(parameters.number("exchanges"));
-    minimum.early_stop = from_ms(parameters.number("early_stop_ms"));
-    minimum.estimate_rate = false;
-    return std::make_unique<TwoWay>(settings,
-                                    [minimum] { return std::make_unique<TwoWayMinimum>(minimum); });
-  };
-  return entry;
+std::unique_ptr<HostSync> make_software_sync(const SoftwareSync& settings) {
+  const TwoWayMinimum::Settings minimum{
+      .exchanges = settings.exchanges, .early_stop = settings.early_stop, .estimate_rate = false};
+  return std::make_unique<TwoWay>(settings.two_way,
+                                  [minimum] { return std::make_unique<TwoWayMinimum>(minimum); });
 }
 
 }  // namespace
 
 std::vector<HostSyncEntry> host_sync_two_way() {
+  const char* const cristian = "Cristian 1989; docs/reference/host_sync.md section 1";
+  const char* const hulls = "MOOS, MOOSSkewFilter; TICSync (Harrison and Newman 2011)";
   return {
       two_way("two_way_min_rtt",
-              "best of N round trips, stamped on departure, rate over the rounds",
-              "Cristian 1989; docs/reference/host_sync.md section 1", Estimator::kRoundTrip, false),
-      two_way("two_way_min_rtt_naive", "the same with clocks read before the send calls",
-              "Cristian 1989; docs/reference/host_sync.md section 1", Estimator::kRoundTrip, true),
-      libsoftwaresync(),
+              "best of N round trips, stamped on departure, rate over the rounds", cristian,
+              TwoWayMinimum::Kind::kRoundTrip, false),
+      two_way("two_way_min_rtt_naive", "the same with clocks read before the send calls", cristian,
+              TwoWayMinimum::Kind::kRoundTrip, true),
+      with_settings<HostSyncEntry>(
+          {.name = "libsoftwaresync",
+           .family = "libsoftwaresync",
+           .summary = "best of up to 300 naive round trips, but stops at the first below 1 ms; "
+                      "offset only",
+           .source = kSoftwareSync},
+          SoftwareSync{}, make_software_sync),
       two_way("two_way_independent_minima",
               "smallest delay of each direction in N exchanges, rate over the rounds",
-              "Jeske 2005; Chaudhari 2010", Estimator::kIndependentMinima, false),
+              "Jeske 2005; Chaudhari 2010", TwoWayMinimum::Kind::kIndependent, false),
       two_way("two_way_hull",
-              "mid-line of the widest corridor between the hulls of both directions' bounds",
-              "MOOS, MOOSSkewFilter; TICSync (Harrison and Newman 2011)", Estimator::kHull, false),
-      two_way("two_way_hull_naive", "the same with clocks read before the send calls",
-              "MOOS, MOOSSkewFilter; TICSync (Harrison and Newman 2011)", Estimator::kHull, true),
+              "mid-line of the widest corridor between the hulls of both directions' bounds", hulls,
+              std::nullopt, false),
+      two_way("two_way_hull_naive", "the same with clocks read before the send calls", hulls,
+              std::nullopt, true),
   };
 }
 

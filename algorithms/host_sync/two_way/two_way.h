@@ -38,7 +38,7 @@
 #include "algorithms/host_sync/messages.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
-#include "algorithms/parameters.h"
+#include "algorithms/parameter_binder.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
@@ -107,7 +107,10 @@ struct TwoWaySettings {
   Nanoseconds steer_interval = from_ms(1000);
   // After each new line, for estimators that make one per round; zero: goes on.
   Nanoseconds round_pause{0};
-  SteeringSettings steering;
+  SteeringSettings steering{};
+
+  // With those of the hull or the minimum that an algorithm on top of it has.
+  void bind(ParameterBinder& parameters, TwoWayHull::Settings& estimator);
 };
 
 class TwoWay : public HostSync {
@@ -159,11 +162,6 @@ class TwoWaySlave {
   SteadyTime steer_at_{};
   OutcomeReport outcome_;
 };
-
-// The parameters of every algorithm on top of the two-way hull.
-std::vector<ParameterSpec> two_way_parameters();
-TwoWaySettings two_way_settings(const Parameters& parameters);
-TwoWayHull::Settings two_way_hull_settings(const Parameters& parameters);
 
 }  // namespace simbench
 

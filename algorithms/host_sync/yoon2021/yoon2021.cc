@@ -333,66 +333,48 @@ const char* const kNotPublished =
     "not published; a fit (docs/reference/calibration.md section 1, FIT-C)";
 const char* const kRepair = "assumption; not part of the printed algorithm";
 
-std::vector<ParameterSpec> yoon2021_parameters() {
-  return {
-      number_parameter("stamps", 100, 1, 1e6, "n_d, the stamps whose mean is t_l", kNotPublished),
-      number_parameter("clock_calls", 100, 1, 1e6,
-                       "n_c, the calls of get and set whose mean is t_t", kNotPublished),
-      number_parameter("threshold_ms", 100, 0, 1e6, "T_th, largest accepted delay", kNotPublished),
-      number_parameter("send_interval_ms", 0, 0, 1e5,
-                       "pace of the stamps; 0: as fast as they can be sent",
-                       "Yoon et al. 2021, Algorithm 1"),
-      number_parameter("pass_limit", 200, 1, 1e6, "passes after which the master ends the session",
-                       kRepair),
-      number_parameter("session_gap_ms", 1000, 0, 1e6, "pause between the sessions of two slaves",
-                       "docs/reference/calibration.md section 1 (gap)"),
-      number_parameter("parallel_sessions", 1, 1, 1e4,
-                       "groups of slaves that are synchronised concurrently",
-                       "Yoon et al. 2021, section 3: slaves in turn"),
-      choice_parameter("latency_estimate", {"literal", "intended"},
-                       "t_l as printed (mean spacing of the stamps), or half the mean round trip",
-                       "docs/reference/paper.md section 4, defect 1"),
-      choice_parameter("transport", {"stream", "datagram"}, "transport of the messages",
-                       kNotPublished),
-      number_parameter("receive_timeout_ms", 5000, 1, 1e7,
-                       "silence that ends a pass; must cover the slave's clock_calls", kRepair),
-      number_parameter("turn_timeout_s", 86400, 1, 1e7, "how long a slave waits for its turn",
-                       kRepair),
-  };
+}  // namespace
+
+void Yoon2021Settings::bind(ParameterBinder& parameters) {
+  parameters.number("stamps", stamps, 1, 1e6, "n_d, the stamps whose mean is t_l", kNotPublished);
+  parameters.number("clock_calls", clock_calls, 1, 1e6,
+                    "n_c, the calls of get and set whose mean is t_t", kNotPublished);
+  parameters.number("threshold_ms", threshold, 0, 1e6, "T_th, largest accepted delay",
+                    kNotPublished);
+  parameters.number("send_interval_ms", send_interval, 0, 1e5,
+                    "pace of the stamps; 0: as fast as they can be sent",
+                    "Yoon et al. 2021, Algorithm 1");
+  parameters.number("pass_limit", pass_limit, 1, 1e6,
+                    "passes after which the master ends the session", kRepair);
+  parameters.number("session_gap_ms", session_gap, 0, 1e6,
+                    "pause between the sessions of two slaves",
+                    "docs/reference/calibration.md section 1 (gap)");
+  parameters.number("parallel_sessions", parallel_sessions, 1, 1e4,
+                    "groups of slaves that are synchronised concurrently",
+                    "Yoon et al. 2021, section 3: slaves in turn");
+  parameters.choice("latency_estimate", ask_for_stamps, {{"literal", false}, {"intended", true}},
+                    "t_l as printed (mean spacing of the stamps), or half the mean round trip",
+                    "docs/reference/paper.md section 4, defect 1");
+  parameters.choice("transport", transport,
+                    {{"stream", Transport::kStream}, {"datagram", Transport::kDatagram}},
+                    "transport of the messages", kNotPublished);
+  parameters.number("receive_timeout_ms", receive_timeout, 1, 1e7,
+                    "silence that ends a pass; must cover the slave's clock_calls", kRepair);
+  parameters.number("turn_timeout_s", turn_timeout, 1, 1e7, "how long a slave waits for its turn",
+                    kRepair);
 }
 
-Yoon2021Settings yoon2021_settings(const Parameters& parameters) {
-  Yoon2021Settings settings;
-  settings.stamps = static_cast<std::uint32_t>(parameters.number("stamps"));
-  settings.clock_calls = static_cast<std::uint32_t>(parameters.number("clock_calls"));
-  settings.threshold = from_ms(parameters.number("threshold_ms"));
-  settings.send_interval = from_ms(parameters.number("send_interval_ms"));
-  settings.pass_limit = static_cast<std::uint32_t>(parameters.number("pass_limit"));
-  settings.session_gap = from_ms(parameters.number("session_gap_ms"));
-  settings.parallel_sessions = static_cast<std::uint32_t>(parameters.number("parallel_sessions"));
-  settings.ask_for_stamps = parameters.text("latency_estimate") == "intended";
-  settings.transport =
-      parameters.text("transport") == "stream" ? Transport::kStream : Transport::kDatagram;
-  settings.receive_timeout = from_ms(parameters.number("receive_timeout_ms"));
-  settings.turn_timeout = from_seconds(parameters.number("turn_timeout_s"));
-  return settings;
-}
+namespace {
 
 HostSyncEntry yoon2021(std::string name, std::string summary, bool add_network_delay,
                        bool add_time_delay) {
-  HostSyncEntry entry;
-  entry.info.name = std::move(name);
-  entry.info.family = "yoon2021";
-  entry.info.summary = std::move(summary);
-  entry.info.source = "Yoon et al. 2021, Sensors 21(18) 6276, Algorithms 1 and 2, Tables 2 and 3";
-  entry.info.parameters = yoon2021_parameters();
-  entry.make = [add_network_delay, add_time_delay](const Parameters& parameters) {
-    Yoon2021Settings settings = yoon2021_settings(parameters);
-    settings.add_network_delay = add_network_delay;
-    settings.add_time_delay = add_time_delay;
-    return std::make_unique<Yoon2021>(settings);
-  };
-  return entry;
+  return with_settings<HostSyncEntry>(
+      {.name = std::move(name),
+       .family = "yoon2021",
+       .summary = std::move(summary),
+       .source = "Yoon et al. 2021, Sensors 21(18) 6276, Algorithms 1 and 2, Tables 2 and 3"},
+      Yoon2021Settings{.add_network_delay = add_network_delay, .add_time_delay = add_time_delay},
+      kMake<Yoon2021>);
 }
 
 }  // namespace

@@ -55,6 +55,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/parameter_binder.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
@@ -75,6 +76,8 @@ struct Yoon2021Settings {
   Transport transport = Transport::kStream;
   Nanoseconds receive_timeout = from_ms(5000);  // must cover the slave's n_c clock calls
   Nanoseconds turn_timeout = from_ms(86.4e6);   // how long a slave waits for its first READY
+
+  void bind(ParameterBinder& parameters);
 };
 
 // How long a side waits for the other's next message before the other counts as silent.

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/capture_alignment/fake_camera.h"
 #include "tests/nonempty.h"
@@ -11,7 +12,7 @@ namespace simbench {
 namespace {
 
 TEST(EveryAlignment, SaysWhatItIsAndWhereItsNumbersAreFrom) {
-  for (const CaptureAlignmentEntry& each : nonempty(capture_alignment_algorithms())) {
+  for (const CaptureAlignmentEntry& each : nonempty(algorithms<CaptureAlignmentEntry>())) {
     EXPECT_FALSE(each.info.summary.empty()) << each.info.name;
     EXPECT_FALSE(each.info.source.empty()) << each.info.name;
     EXPECT_THAT(each.info.needs, testing::Contains(Need::kFrameControl)) << each.info.name;
@@ -24,7 +25,7 @@ TEST(EveryAlignment, SaysWhatItIsAndWhereItsNumbersAreFrom) {
 }
 
 TEST(EveryAlignment, EndsOrWaitsWhereHostsHaveNoCameras) {
-  for (const CaptureAlignmentEntry& each : nonempty(capture_alignment_algorithms())) {
+  for (const CaptureAlignmentEntry& each : nonempty(algorithms<CaptureAlignmentEntry>())) {
     FakeRig rig(2);
     rig.run(*make_alignment(each.info.name), from_ms(10'000));
     EXPECT_TRUE(rig.host(0).reports().empty() && rig.host(1).reports().empty()) << each.info.name;
@@ -33,7 +34,7 @@ TEST(EveryAlignment, EndsOrWaitsWhereHostsHaveNoCameras) {
 
 // Whatever a camera lacks, it is said once, and does not end the run.
 TEST(EveryAlignment, TakesCamerasWithoutAnyControl) {
-  for (const CaptureAlignmentEntry& each : nonempty(capture_alignment_algorithms())) {
+  for (const CaptureAlignmentEntry& each : nonempty(algorithms<CaptureAlignmentEntry>())) {
     if (each.info.family == "limits") continue;
     FakeRig rig(2);
     rig.add(0, {.phase = from_ms(3)});
@@ -51,7 +52,7 @@ TEST(EveryAlignment, TakesCamerasWithoutAnyControl) {
 
 // They wait, and come to no harm.
 TEST(EveryAlignment, TakesCamerasThatFallSilent) {
-  for (const CaptureAlignmentEntry& each : nonempty(capture_alignment_algorithms())) {
+  for (const CaptureAlignmentEntry& each : nonempty(algorithms<CaptureAlignmentEntry>())) {
     FakeRig rig(2);
     rig.add(0, {.phase = from_ms(3), .stops_at = from_ms(100)});
     rig.add(1, {.phase = from_ms(7), .stops_at = from_ms(50)});

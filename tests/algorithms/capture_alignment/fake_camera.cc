@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -162,7 +163,7 @@ void FakeRig::run(CaptureAlignment& algorithm, Nanoseconds end) {
 
 std::unique_ptr<CaptureAlignment> make_alignment(const std::string& name,
                                                  const ParameterValues& given) {
-  const CaptureAlignmentEntry* const entry = find_capture_alignment(name);
+  const CaptureAlignmentEntry* const entry = find_algorithm<CaptureAlignmentEntry>(name);
   if (entry == nullptr) throw std::out_of_range(name);
   return entry->make(check_parameters(entry->info.parameters, given));
 }

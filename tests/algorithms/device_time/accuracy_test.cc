@@ -15,7 +15,7 @@ namespace simbench {
 namespace {
 
 DeviceTimeErrors errors_of(const std::string& name, const std::vector<DeviceTimeRun>& runs) {
-  const DeviceTimeEntry* entry = find_device_time(name);
+  const DeviceTimeEntry* entry = find_algorithm<DeviceTimeEntry>(name);
   DeviceTimeErrors all;
   for (const DeviceTimeRun& run : runs) {
     const auto estimator = entry->make(check_parameters(entry->info.parameters, {}));

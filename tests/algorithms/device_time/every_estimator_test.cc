@@ -30,7 +30,7 @@ class EveryEstimator : public ::testing::TestWithParam<std::string> {
   // The paper's estimators have no rule against clocks that are set; RocSync's uses no host's.
   bool knows_steps() const {
     const std::string& family =
-        find_device_time(parse_device_time_name(GetParam()).base)->info.family;
+        find_algorithm<DeviceTimeEntry>(parse_device_time_name(GetParam()).base)->info.family;
     return family != "regression" && family != "eq1" && family != "raw_arrival" &&
            family != "sensor_normalised" && family != "rocsync_led";
   }
@@ -194,7 +194,7 @@ TEST_P(EveryEstimator, CoarseAndStandingArrivals) {
 }
 
 TEST(DeviceTimeRegistry, PollEstimatorsSaySo) {
-  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
+  for (const DeviceTimeEntry& entry : nonempty(algorithms<DeviceTimeEntry>())) {
     const bool polls =
         entry.info.name == "two_way_poll" || entry.info.name == "librealsense_global";
     EXPECT_EQ(std::count(entry.info.needs.begin(), entry.info.needs.end(), Need::kPolls), polls)
@@ -203,7 +203,7 @@ TEST(DeviceTimeRegistry, PollEstimatorsSaySo) {
 }
 
 TEST(DeviceTimeRegistry, OnlyPollsAreOfUseDuringTheWarmUp) {
-  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
+  for (const DeviceTimeEntry& entry : nonempty(algorithms<DeviceTimeEntry>())) {
     if (!entry.make || entry.info.source == "test") continue;
     const auto estimator = entry.make(check_parameters(entry.info.parameters, {}));
     const bool polls = std::ranges::count(entry.info.needs, Need::kPolls) > 0;
@@ -213,13 +213,13 @@ TEST(DeviceTimeRegistry, OnlyPollsAreOfUseDuringTheWarmUp) {
 
 TEST(DeviceTimeRegistry, ParametersReachTheirEstimators) {
   // Olson's alpha: 1000 ppm leak 20 us in a frame of 20 ms.
-  const DeviceTimeEntry* olson = find_device_time("olson_50ppm");
+  const DeviceTimeEntry* olson = find_algorithm<DeviceTimeEntry>("olson_50ppm");
   const auto estimator =
       olson->make(check_parameters(olson->info.parameters, {{"alpha_ppm", 1000.0}}));
   const auto samples = line(3, 20'000, 1000, 0);
   EXPECT_EQ(nanoseconds_of(stamps(*estimator, samples)[2]), nanoseconds_of(samples[2].arrival));
   EXPECT_THROW(check_parameters(olson->info.parameters, {{"alpha_ppm", -1.0}}), ParameterError);
-  const DeviceTimeEntry* kalman = find_device_time("kalman");
+  const DeviceTimeEntry* kalman = find_algorithm<DeviceTimeEntry>("kalman");
   EXPECT_THROW(check_parameters(kalman->info.parameters, {{"gate", 0.0}}), ParameterError);
 }
 

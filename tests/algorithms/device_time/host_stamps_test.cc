@@ -78,7 +78,7 @@ TEST(HostStamps, TheSteadyVariantMapsAFrameFromBeforeAStep) {
 }
 
 TEST(HostStamps, NeedCamerasThatStampWithTheirHostsClock) {
-  const DeviceTimeEntry* entry = find_device_time("host_stamps");
+  const DeviceTimeEntry* entry = find_algorithm<DeviceTimeEntry>("host_stamps");
   ASSERT_NE(entry, nullptr);
   EXPECT_EQ(entry->info.needs, std::vector<Need>{Need::kHostStamps});
 }

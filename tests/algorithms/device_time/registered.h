@@ -14,7 +14,7 @@ namespace simbench {
 
 inline std::vector<std::string> registered_estimators() {
   std::vector<std::string> names;
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     if (!entry.make || entry.info.source == "test") continue;
     if (entry.info.name == "host_stamps") continue;  // of cameras that stamp with their host's
     names.push_back(entry.info.name);
@@ -26,7 +26,7 @@ inline std::vector<std::string> registered_estimators() {
 // With the default parameters.
 inline std::unique_ptr<DeviceTimeEstimator> make_registered(const std::string& full_name) {
   const DeviceTimeName name = parse_device_time_name(full_name);
-  const DeviceTimeEntry* entry = find_device_time(name.base);
+  const DeviceTimeEntry* entry = find_algorithm<DeviceTimeEntry>(name.base);
   return make_variant(name, entry->make(check_parameters(entry->info.parameters, {})), {});
 }
 

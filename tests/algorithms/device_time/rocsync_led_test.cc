@@ -124,7 +124,7 @@ TEST(RocsyncLed, WithoutSightingsStampsCountFromTheFirstFrame) {
 }
 
 TEST(RocsyncLed, NeedsAnLedClock) {
-  const DeviceTimeEntry* entry = find_device_time("rocsync_led");
+  const DeviceTimeEntry* entry = find_algorithm<DeviceTimeEntry>("rocsync_led");
   ASSERT_NE(entry, nullptr);
   EXPECT_EQ(entry->info.needs, std::vector<Need>{Need::kLedClock});
   EXPECT_THROW(check_parameters(entry->info.parameters, {{"threshold_ms", 0.0}}), ParameterError);

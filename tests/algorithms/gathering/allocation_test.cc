@@ -40,7 +40,7 @@ void push_lossy_pulses(Gatherer& gatherer, std::int64_t first, std::int64_t coun
 TEST(GatheringAllocations, NoneOnceWarm) {
   const GatheringSetup setup = {
       .sources = 6, .period = from_ms(20), .interval = from_ms(10), .queue_limit = 16};
-  for (const GatheringEntry& entry : nonempty(gathering_algorithms())) {
+  for (const GatheringEntry& entry : nonempty(algorithms<GatheringEntry>())) {
     const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
     push_lossy_pulses(*gatherer, 0, 900);
     const std::uint64_t before = sim::allocations();

@@ -23,14 +23,14 @@ namespace {
 class EveryGatherer : public testing::TestWithParam<std::string> {
  protected:
   static std::unique_ptr<Gatherer> make(const GatheringSetup& setup) {
-    const GatheringEntry& entry = *find_gathering(GetParam());
+    const GatheringEntry& entry = *find_algorithm<GatheringEntry>(GetParam());
     return entry.make(check_parameters(entry.info.parameters, {}), setup);
   }
 };
 
 std::vector<std::string> gatherer_names() {
   std::vector<std::string> all;
-  for (const GatheringEntry& entry : gathering_algorithms()) all.push_back(entry.info.name);
+  for (const GatheringEntry& entry : algorithms<GatheringEntry>()) all.push_back(entry.info.name);
   return all;
 }
 

@@ -37,7 +37,7 @@ Found gather(const std::string& name, double sigma_ms, double drop) {
                                 .drop = drop,
                                 .delay_max_ms = 3};
   const std::vector<GatherFrame> frames = frames_of(world, 7);
-  const GatheringEntry& entry = *find_gathering(name);
+  const GatheringEntry& entry = *find_algorithm<GatheringEntry>(name);
   const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}),
                                    {.sources = world.sources,
                                     .period = from_ms(world.period_ms),
@@ -92,7 +92,7 @@ TEST(GatheringPolicies, TheOracleIsPerfectWhateverTheStamps) {
 }
 
 TEST(GatheringPolicies, TheOracleGivesUpFramesOfNoPulse) {
-  const GatheringEntry& entry = *find_gathering("oracle");
+  const GatheringEntry& entry = *find_algorithm<GatheringEntry>("oracle");
   const auto gatherer = entry.make({}, {.sources = 2});
   CollectedSets out;
   gatherer->push(frame_at(0, 0, -1), out);

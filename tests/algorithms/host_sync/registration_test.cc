@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
 #include "tests/nonempty.h"
@@ -15,7 +16,7 @@ namespace simbench {
 namespace {
 
 const HostSyncEntry& entry(const std::string& name) {
-  const HostSyncEntry* found = find_host_sync(name);
+  const HostSyncEntry* found = find_algorithm<HostSyncEntry>(name);
   if (found == nullptr) throw std::out_of_range(name);
   return *found;
 }
@@ -26,7 +27,7 @@ std::unique_ptr<HostSync> make_host_sync(const std::string& name,
 }
 
 TEST(HostSyncRegistration, EveryEntrySaysWhatItIsAndWhereItsNumbersAreFrom) {
-  for (const HostSyncEntry& each : nonempty(host_sync_algorithms())) {
+  for (const HostSyncEntry& each : nonempty(algorithms<HostSyncEntry>())) {
     EXPECT_FALSE(each.info.summary.empty()) << each.info.name;
     EXPECT_FALSE(each.info.source.empty()) << each.info.name;
     for (const ParameterSpec& spec : each.info.parameters) {
@@ -39,7 +40,7 @@ TEST(HostSyncRegistration, EveryEntrySaysWhatItIsAndWhereItsNumbersAreFrom) {
 
 TEST(HostSyncRegistration, TheNamesAreTheFixedOnes) {
   std::vector<std::string> names;
-  for (const HostSyncEntry& each : host_sync_algorithms()) names.push_back(each.info.name);
+  for (const HostSyncEntry& each : algorithms<HostSyncEntry>()) names.push_back(each.info.name);
   EXPECT_THAT(names,
               testing::IsSupersetOf({"yoon2021_network", "yoon2021_time", "yoon2021_both",
                                      "yoon2021_neither", "w32time", "free_running", "ntp_last_set",

@@ -25,14 +25,15 @@ class PerturbedGate : public ProgramTest {
     static bool is_done = false;  // a name may be registered once, also where tests are repeated
     if (std::exchange(is_done, true)) return;
     for (const auto& [name, frames] : {std::pair("regression_5", 5), {"regression_20", 20}}) {
-      register_device_time({.info = {.name = name,
-                                     .family = name,
-                                     .summary = "a perturbed regression_30",
-                                     .source = "",
-                                     .parameters = {}},
-                            .make = [frames = frames](const Parameters&) {
-                              return make_regression({static_cast<std::size_t>(frames)});
-                            }});
+      register_algorithm<DeviceTimeEntry>({.info = {.name = name,
+                                                    .family = name,
+                                                    .summary = "a perturbed regression_30",
+                                                    .source = "",
+                                                    .parameters = {}},
+                                           .make = [frames = frames](const Parameters&) {
+                                             return make_regression(
+                                                 {static_cast<std::size_t>(frames)});
+                                           }});
     }
   }
 

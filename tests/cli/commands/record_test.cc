@@ -170,7 +170,8 @@ TEST_F(RecordCommand, CtrlCKeepsWhatWasRecorded) {
   const ProgramResult result =
       run({"record", "--scenario", "18cam_6host_45fps", "--set", "/timeline/frames=500000",
            "--pipelines", "genlock,oracle", "-o", "rec"},
-          {.interrupt_after = std::chrono::milliseconds(500)});
+          {.interrupt_after = std::chrono::milliseconds(0),
+           .interrupt_once_written = "rec/genlock/1/frames.csv"});
   EXPECT_EQ(result.status, 130);
   EXPECT_THAT(result.err, HasSubstr("interrupted after 0 of 2 captures; rec holds what was "));
   const Json capture = Json::parse(content("rec/manifest.json"))["captures"][0];

@@ -9,15 +9,23 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "cli/command_line.h"
 
 namespace {
 
+struct ConstantDelaySettings {
+  simbench::Nanoseconds delay = simbench::from_ms(40);
+  void bind(simbench::ParameterBinder& parameters) {
+    parameters.number("delay_ms", delay, 0, 1000, "from exposure to arrival", "a guess");
+  }
+};
+
 // A frame was exposed a fixed time before it arrived: no more than that.
 class ConstantDelay : public simbench::DeviceTimeEstimator {
  public:
-  explicit ConstantDelay(double delay_ms) : delay_(simbench::from_ms(delay_ms)) {}
+  explicit ConstantDelay(const ConstantDelaySettings& settings) : delay_(settings.delay) {}
   simbench::GlobalTime stamp(const simbench::DeviceSample& sample) override {
     return simbench::GlobalTime(sample.arrival.time_since_epoch() - delay_);
   }
@@ -26,12 +34,19 @@ class ConstantDelay : public simbench::DeviceTimeEstimator {
   simbench::Nanoseconds delay_;
 };
 
+struct CristianSettings {
+  int questions = 16;
+  void bind(simbench::ParameterBinder& parameters) {
+    parameters.number("questions", questions, 1, 1000, "how often a slave asks", "a guess");
+  }
+};
+
 // A host_sync: Cristian's algorithm (Distributed Computing 3, 1989). A slave asks the master for
 // the time some times, believes the answer of the shortest round trip, and sets its clock once, as
 // if both ways of that had taken the same time.
 class Cristian : public simbench::HostSync {
  public:
-  explicit Cristian(int questions) : questions_(questions) {}
+  explicit Cristian(CristianSettings settings) : questions_(settings.questions) {}
 
   simbench::Task<void> run_master(simbench::Host& host,
                                   std::vector<simbench::PeerId> slaves) override {
@@ -84,43 +99,20 @@ class Cristian : public simbench::HostSync {
   int questions_;
 };
 
-simbench::HostSyncEntry cristian() {
-  return {.info = {.name = "cristian",
-                   .family = "cristian",
-                   .summary = "sets the clock once, by the fastest answer",
-                   .source = "Cristian 1989",
-                   .parameters = {{.name = "questions",
-                                   .fallback = 16,
-                                   .low = 1,
-                                   .high = 1000,
-                                   .choices = {},
-                                   .meaning = "how often a slave asks",
-                                   .source = "a guess"}}},
-          .make = [](const simbench::Parameters& parameters) {
-            return std::make_unique<Cristian>(static_cast<int>(parameters.number("questions")));
-          }};
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  simbench::register_device_time({
-      .info = {.name = "constant_delay",
-               .family = "constant_delay",
-               .summary = "arrival minus a constant",
-               .source = "an example",
-               .parameters = {{.name = "delay_ms",
-                               .fallback = 40,
-                               .low = 0,
-                               .high = 1000,
-                               .choices = {},
-                               .meaning = "from exposure to arrival",
-                               .source = "a guess"}}},
-      .make =
-          [](const simbench::Parameters& parameters) {
-            return std::make_unique<ConstantDelay>(parameters.number("delay_ms"));
-          },
-  });
-  simbench::register_host_sync(cristian());
+  simbench::register_algorithm(simbench::with_settings<simbench::DeviceTimeEntry>(
+      {.name = "constant_delay",
+       .family = "constant_delay",
+       .summary = "arrival minus a constant",
+       .source = "an example"},
+      ConstantDelaySettings{}, simbench::kMake<ConstantDelay>));
+  simbench::register_algorithm(simbench::with_settings<simbench::HostSyncEntry>(
+      {.name = "cristian",
+       .family = "cristian",
+       .summary = "sets the clock once, by the fastest answer",
+       .source = "Cristian 1989"},
+      CristianSettings{}, simbench::kMake<Cristian>));
   return simbench::run_command_line(argc, argv);
 }

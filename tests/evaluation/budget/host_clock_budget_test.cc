@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/recording.h"
 #include "scenarios/loader.h"
@@ -59,8 +60,8 @@ class StepOnce final : public HostSync {
 };
 
 void register_once(const std::string& name, bool one_way) {
-  if (find_host_sync(name) != nullptr) return;
-  register_host_sync(
+  if (find_algorithm<HostSyncEntry>(name) != nullptr) return;
+  register_algorithm<HostSyncEntry>(
       {.info = {.name = name,
                 .family = "test_" + name,
                 .summary = "one exchange, one step",

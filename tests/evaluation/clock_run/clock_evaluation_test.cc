@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 

@@ -29,8 +29,8 @@ TEST(AdHocPipelines, AreAppendedOnceAndChosenByTheirText) {
   EXPECT_TRUE(scenario.derivation.changes.size() == 1) << "a pipeline is no change of the world";
   const std::vector<PipelineChoice> chosen = choose_pipelines(scenario, names);
   EXPECT_EQ(chosen[0].pipeline.name, names[0]);
-  EXPECT_EQ(chosen[0].host_sync.info.name, "chrony");
-  EXPECT_EQ(chosen[0].gathering.info.name, "genlock");
+  EXPECT_EQ(chosen[0].host_sync.info().name, "chrony");
+  EXPECT_EQ(chosen[0].gathering.info().name, "genlock");
   EXPECT_EQ(with_ad_hoc_pipelines(kScenario, {}, {names[0], names[0]}).size(), 1U);
 }
 
@@ -53,10 +53,10 @@ TEST(AdHocPipelines, FourPartsSteerTheExposures) {
   const scenarios::Scenario scenario = scenarios::load_scenario(
       kPhones, with_ad_hoc_pipelines(kPhones, {}, names, AdHoc::kHostSyncToo));
   const std::vector<PipelineChoice> chosen = choose_pipelines(scenario, names);
-  EXPECT_EQ(chosen[0].host_sync.info.name, "oracle");
-  EXPECT_EQ(chosen[0].capture_alignment.info.name, "phase_rate");
-  EXPECT_EQ(chosen[0].device_time.info.name, "hull_300");
-  EXPECT_EQ(chosen[0].gathering.info.name, "yoon2021");
+  EXPECT_EQ(chosen[0].host_sync.info().name, "oracle");
+  EXPECT_EQ(chosen[0].capture_alignment.info().name, "phase_rate");
+  EXPECT_EQ(chosen[0].device_time.info().name, "hull_300");
+  EXPECT_EQ(chosen[0].gathering.info().name, "yoon2021");
 }
 
 TEST(AdHocPipelines, AHostSyncAloneHasTheFirstPipelinesAlignment) {

@@ -26,12 +26,12 @@ TEST_P(LeaderboardScenario, HasEveryHostSyncAndEveryDeviceTime) {
     if (!pipeline.name.starts_with("device.")) continue;
     device_times.insert(parse_device_time_name(pipeline.device_time).base);
   }
-  for (const HostSyncEntry& entry : nonempty(host_sync_algorithms())) {
+  for (const HostSyncEntry& entry : nonempty(algorithms<HostSyncEntry>())) {
     if (entry.info.family.starts_with("test_")) continue;  // of another test
     if (entry.info.name == "ntp_first_run") continue;      // as ntp, where no host has a drift file
     EXPECT_TRUE(host_syncs.contains(entry.info.name)) << entry.info.name;
   }
-  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
+  for (const DeviceTimeEntry& entry : nonempty(algorithms<DeviceTimeEntry>())) {
     if (entry.info.family.starts_with("test_")) continue;  // of another test
     // Its cameras have clocks of their own, and see no other.
     const bool is_of_other_worlds =
@@ -50,7 +50,7 @@ TEST(LeaderboardGathering, HasEveryGathering) {
   for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
     gatherings.insert(pipeline.gathering);
   }
-  for (const GatheringEntry& entry : nonempty(gathering_algorithms())) {
+  for (const GatheringEntry& entry : nonempty(algorithms<GatheringEntry>())) {
     EXPECT_TRUE(gatherings.contains(entry.info.name)) << entry.info.name;
   }
 }

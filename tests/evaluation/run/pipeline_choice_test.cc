@@ -38,21 +38,21 @@ class Lag final : public DeviceTimeEstimator {
 };
 
 void register_lag() {
-  if (find_device_time(kLag) != nullptr) return;
-  register_device_time({.info = {.name = kLag,
-                                 .family = "test_lags",
-                                 .summary = "arrival plus a constant",
-                                 .source = "this test",
-                                 .parameters = {{.name = "lag_ms",
-                                                 .fallback = 1.0,
-                                                 .low = 0,
-                                                 .high = 100,
-                                                 .choices = {},
-                                                 .meaning = "the constant",
-                                                 .source = "this test"}}},
-                        .make = [](const Parameters& parameters) {
-                          return std::make_unique<Lag>(parameters.number("lag_ms"));
-                        }});
+  if (find_algorithm<DeviceTimeEntry>(kLag) != nullptr) return;
+  register_algorithm<DeviceTimeEntry>({.info = {.name = kLag,
+                                                .family = "test_lags",
+                                                .summary = "arrival plus a constant",
+                                                .source = "this test",
+                                                .parameters = {{.name = "lag_ms",
+                                                                .fallback = 1.0,
+                                                                .low = 0,
+                                                                .high = 100,
+                                                                .choices = {},
+                                                                .meaning = "the constant",
+                                                                .source = "this test"}}},
+                                       .make = [](const Parameters& parameters) {
+                                         return std::make_unique<Lag>(parameters.number("lag_ms"));
+                                       }});
 }
 
 Scenario lag_scenario() {
@@ -137,7 +137,7 @@ TEST(PipelineChoiceTest, SuffixesOfADeviceTimeAreItsVariants) {
   Scenario scenario = test_scenario();
   scenario.pipelines[0].device_time = "hull_300_steady_calibrated";
   const PipelineChoice choice = choose_pipelines(scenario, {}).front();
-  EXPECT_EQ(choice.device_time.info.name, "hull_300");
+  EXPECT_EQ(choice.device_time.info().name, "hull_300");
   EXPECT_TRUE(choice.device_time_variants.steady);
   EXPECT_TRUE(choice.device_time_variants.calibrated);
   scenario.pipelines[0].device_time = "oracle_steady";
@@ -246,7 +246,7 @@ TEST(PipelineChoiceTest, ParametersThatContradictEachOtherAreRefusedWhereTheyAre
 // Every pair of a least and a most is declared, whatever algorithm has it.
 TEST(PipelineChoiceTest, EveryPairOfBoundsIsInOrder) {
   int pairs = 0;
-  for (const HostSyncEntry& entry : nonempty(host_sync_algorithms())) {
+  for (const HostSyncEntry& entry : nonempty(algorithms<HostSyncEntry>())) {
     for (const ParameterSpec& spec : entry.info.parameters) {
       if (!spec.name.starts_with("max_")) continue;
       const std::string least = "min_" + spec.name.substr(4);
@@ -264,18 +264,25 @@ TEST(PipelineChoiceTest, EveryPairOfBoundsIsInOrder) {
 // A user's own algorithm that refuses what its declaration allows.
 TEST(PipelineChoiceTest, AnAlgorithmThatCannotBeMadeIsRefused) {
   const char* const name = "test_fussy";
-  if (find_device_time(name) == nullptr) {
-    register_device_time({.info = {.name = name,
-                                   .family = name,
-                                   .summary = "takes no odd number",
-                                   .source = "this test",
-                                   .parameters = {number_parameter("number", 2, 0, 9, "", "test")}},
-                          .make = [](const Parameters& parameters) {
-                            if (parameters.number("number") == 3) {
-                              throw ParameterError("number", "found 3, allowed: even numbers");
-                            }
-                            return std::make_unique<Lag>(1);
-                          }});
+  if (find_algorithm<DeviceTimeEntry>(name) == nullptr) {
+    register_algorithm<DeviceTimeEntry>({.info = {.name = name,
+                                                  .family = name,
+                                                  .summary = "takes no odd number",
+                                                  .source = "this test",
+                                                  .parameters = {{.name = "number",
+                                                                  .fallback = 2,
+                                                                  .low = 0,
+                                                                  .high = 9,
+                                                                  .choices = {},
+                                                                  .meaning = "",
+                                                                  .source = "test"}}},
+                                         .make = [](const Parameters& parameters) {
+                                           if (parameters.number("number") == 3) {
+                                             throw ParameterError("number",
+                                                                  "found 3, allowed: even numbers");
+                                           }
+                                           return std::make_unique<Lag>(1);
+                                         }});
   }
   const std::vector<scenarios::Override> base = {{"/pipelines/0/device_time", name}};
   EXPECT_EQ(problem_with(base), "none");

@@ -160,15 +160,17 @@ ScorerSetup block_setup(const std::string& device_time, const std::string& gathe
   ScorerSetup setup;
   setup.genlock = knowledge == Knowledge::kTruthAndGenlock || knowledge == Knowledge::kGenlock;
   const DeviceTimeName name = parse_device_time_name(device_time);
-  const DeviceTimeEntry& estimator = *find_device_time(name.base);
+  const DeviceTimeEntry& estimator = *find_algorithm<DeviceTimeEntry>(name.base);
   if (estimator.make) {
     setup.make_estimator = [name, &estimator] {
       const Parameters parameters = check_parameters(estimator.info.parameters, {});
       return make_variant(name, estimator.make(parameters), {});
     };
   }
-  setup.make_second_estimator = [] { return find_device_time("regression_offline")->make({}); };
-  const GatheringEntry& gatherer = *find_gathering(gathering);
+  setup.make_second_estimator = [] {
+    return find_algorithm<DeviceTimeEntry>("regression_offline")->make({});
+  };
+  const GatheringEntry& gatherer = *find_algorithm<GatheringEntry>(gathering);
   setup.make_gatherer = [&gatherer](const GatheringSetup& gathering_setup) {
     return gatherer.make(check_parameters(gatherer.info.parameters, {}), gathering_setup);
   };
@@ -201,7 +203,7 @@ void expect_blocks_change_nothing(const std::string& device_time, const std::str
 }
 
 TEST(ScoreBlocks, EveryDeviceTime) {
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     if (entry.info.source == "test") continue;
     expect_blocks_change_nothing(entry.info.name, "yoon2021");
     if (entry.make)
@@ -210,7 +212,7 @@ TEST(ScoreBlocks, EveryDeviceTime) {
 }
 
 TEST(ScoreBlocks, EveryGathering) {
-  for (const GatheringEntry& entry : gathering_algorithms()) {
+  for (const GatheringEntry& entry : algorithms<GatheringEntry>()) {
     if (entry.info.source == "test") continue;
     expect_blocks_change_nothing("regression_30", entry.info.name);
     expect_blocks_change_nothing("sensor_normalised", entry.info.name);

@@ -7,6 +7,7 @@
 #include <boost/asio/detached.hpp>
 #include <cmath>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "tests/hardware/await.h"
 #include "tests/hardware/node/host_pair.h"
@@ -15,7 +16,7 @@ namespace simbench::hardware {
 namespace {
 
 std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& values = {}) {
-  const HostSyncEntry* entry = find_host_sync(name);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(name);
   if (entry == nullptr) throw std::invalid_argument("no host_sync " + name);
   return entry->make(check_parameters(entry->info.parameters, values));
 }

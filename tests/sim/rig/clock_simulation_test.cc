@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/recording.h"
 #include "scenarios/loader.h"
@@ -263,7 +264,7 @@ struct Sync {
 
 Kept synchronised(const Sync& sync, std::uint64_t seed, Nanoseconds duration = seconds(600)) {
   const scenarios::Scenario scenario = scenarios::load_scenario(sync.scenario);
-  const HostSyncEntry* entry = find_host_sync(sync.host_sync);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(sync.host_sync);
   const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
   return read_clocks(scenario, {.seed = seed,
                                 .pipeline = sync.host_sync,
@@ -316,7 +317,7 @@ TEST(ClockSimulation, ACaptureBesideItChangesNothing) {
   const Sync sync{"6host_star", "chrony"};
   const Kept alone = synchronised(sync, 3);
   const scenarios::Scenario scenario = scenarios::load_scenario(sync.scenario);
-  const HostSyncEntry* entry = find_host_sync(sync.host_sync);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(sync.host_sync);
   const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
   Kept beside;
   beside.cost = make_clock_simulation(scenario)->run({.seed = 3,

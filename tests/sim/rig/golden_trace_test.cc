@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/event.h"
 #include "recording/event_text.h"
@@ -69,7 +71,7 @@ Golden run_golden(const Golden& golden) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario(golden.scenario, brief(golden.scenario));
   const scenarios::Pipeline& pipeline = pipeline_of(scenario, golden.pipeline);
-  const HostSyncEntry* entry = find_host_sync(pipeline.host_sync);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(pipeline.host_sync);
   ParameterValues values;
   if (const auto given = scenario.algorithms.find(entry->info.family);
       given != scenario.algorithms.end()) {
@@ -77,7 +79,7 @@ Golden run_golden(const Golden& golden) {
   }
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, values));
   std::unique_ptr<CaptureAlignment> alignment;
-  if (const auto* steered = find_capture_alignment(pipeline.capture_alignment)) {
+  if (const auto* steered = find_algorithm<CaptureAlignmentEntry>(pipeline.capture_alignment)) {
     alignment = steered->make(check_parameters(steered->info.parameters, {}));
   }
   KeptRecording recording;

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
@@ -60,7 +61,7 @@ class HostErrors : public TestSink {
 
 HostErrors closed_loop(const std::string& name, const scenarios::Scenario& scenario,
                        std::uint64_t seed, const ParameterValues& given = {}) {
-  const HostSyncEntry* entry = find_host_sync(name);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(name);
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, given));
   HostErrors errors(scenario);
   make_simulation(scenario)->record({.seed = seed, .pipeline = name, .host_sync = host_sync.get()},

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
@@ -49,7 +50,7 @@ class SlaveErrors : public TestSink {
 
 std::vector<double> means_us(const std::string& name, const scenarios::Scenario& scenario,
                              std::uint64_t seed) {
-  const HostSyncEntry* entry = find_host_sync(name);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(name);
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, {}));
   SlaveErrors errors;
   make_simulation(scenario)->record({.seed = seed, .pipeline = name, .host_sync = host_sync.get()},

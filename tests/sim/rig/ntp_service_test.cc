@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/event.h"
 #include "recording/recording.h"
@@ -54,7 +55,7 @@ class PulseErrors final : public TestSink {
 PulseErrors record_lan(const std::string& name, std::uint64_t seed) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario("18cam_6host_45fps_lan", {{"/timeline/frames", "10"}});
-  const HostSyncEntry* entry = find_host_sync(name);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(name);
   const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
   PulseErrors errors;
   make_simulation(scenario)->record({.seed = seed, .pipeline = name, .host_sync = algorithm.get()},
@@ -100,7 +101,7 @@ TEST(NtpFamily, EqualSeedsGiveEqualRuns) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario("18cam_6host_45fps_lan", {{"/timeline/frames", "10"}});
   for (const std::string name : {"chrony", "ntp_broadcast_volley"}) {
-    const HostSyncEntry* entry = find_host_sync(name);
+    const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(name);
     const auto algorithm =
         entry->make(check_parameters(entry->info.parameters, {{"service_hours", 1.0}}));
     const RecordingRequest request{.seed = 3, .pipeline = name, .host_sync = algorithm.get()};

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/event.h"
 #include "scenarios/loader.h"
@@ -57,7 +58,7 @@ class Collector final : public TestSink {
 
 RecordingCost record(const scenarios::Scenario& scenario, const std::string& host_sync,
                      RecordingSink& sink, std::uint64_t seed = 1) {
-  const HostSyncEntry* entry = find_host_sync(host_sync);
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(host_sync);
   const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
   return make_simulation(scenario)->record(
       {.seed = seed, .pipeline = host_sync, .host_sync = algorithm.get()}, sink);

@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/event.h"
 #include "scenarios/loader.h"
@@ -88,7 +90,7 @@ class Scripted : public CaptureAlignment {
 
 RecordingCost record_steered(const scenarios::Scenario& scenario, CaptureAlignment* alignment,
                              RecordingSink& sink, std::uint64_t seed = 1) {
-  const HostSyncEntry* entry = find_host_sync("oracle");
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>("oracle");
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, {}));
   return make_simulation(scenario)->record({.seed = seed,
                                             .pipeline = "trigger_tree",
@@ -98,7 +100,7 @@ RecordingCost record_steered(const scenarios::Scenario& scenario, CaptureAlignme
 }
 
 std::unique_ptr<CaptureAlignment> registered(const std::string& name) {
-  const CaptureAlignmentEntry* entry = find_capture_alignment(name);
+  const CaptureAlignmentEntry* entry = find_algorithm<CaptureAlignmentEntry>(name);
   return entry->make(check_parameters(entry->info.parameters, {}));
 }
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
@@ -39,7 +41,8 @@ struct Choice {
 };
 
 std::unique_ptr<CaptureAlignment> alignment_of(const Choice& choice) {
-  const CaptureAlignmentEntry* entry = find_capture_alignment(choice.capture_alignment);
+  const CaptureAlignmentEntry* entry =
+      find_algorithm<CaptureAlignmentEntry>(choice.capture_alignment);
   return entry == nullptr ? nullptr : entry->make(check_parameters(entry->info.parameters, {}));
 }
 
@@ -57,7 +60,7 @@ TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
     SCOPED_TRACE(choice.scenario + ", " + choice.host_sync);
     const scenarios::Scenario scenario = scenarios::load_scenario(
         choice.scenario, {{"/timeline/frames", "20"}, {"/timeline/warm_up_ms", "500"}});
-    const HostSyncEntry* entry = find_host_sync(choice.host_sync);
+    const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(choice.host_sync);
     ASSERT_NE(entry, nullptr);
     const auto record = [&](WorldObserver* observer, WrittenRecording& written) {
       const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));

@@ -57,7 +57,7 @@ TEST(ChronyReference, AnOffsetOfOneDeviationTakesHalfOfThreeIntervals) {
 TEST(ChronyReference, ASlewIsNeitherTooShortNorTooFast) {
   ChronyReference reference({});
   EXPECT_NEAR(reference.update(estimate(1e-3, 0, 1e-6), 0, 0).slew_rate, 1e-3, 1e-15);
-  EXPECT_NEAR(reference.update(estimate(-10, 0, 1e-6), 1, 0).slew_rate, 83333e-6, 1e-15);
+  EXPECT_NEAR(reference.update(estimate(-10, 0, 1e-6), 1, 0).slew_rate, 83333.333e-6, 1e-15);
   EXPECT_EQ(reference.update(estimate(0, 0, 1e-6), 2, 0).slew_rate, 0);
 }
 

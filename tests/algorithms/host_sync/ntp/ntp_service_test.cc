@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algorithms/host_sync/ntp/ntp_association.h"
+#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
 #include "tests/nonempty.h"
@@ -21,7 +22,7 @@ std::vector<HostSyncEntry> ntp_host_syncs() {
   std::vector<HostSyncEntry> entries;
   for (const char* name : {"ntp", "ntp_lan", "ntp_daemon_loop", "ntp_broadcast_volley",
                            "ntp_broadcast_fixed", "w32time", "w32time_domain", "chrony"}) {
-    entries.push_back(*find_host_sync(name));
+    entries.push_back(*find_algorithm<HostSyncEntry>(name));
   }
   return entries;
 }
