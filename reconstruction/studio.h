@@ -17,8 +17,8 @@
 //
 // Source: section 4 of the paper (6 angles, 3 heights), docs/reference/calibration.md section 6.
 //
-//   const StudioRig studio(scenario, seed);          // throws scenarios::InputError without a
-//   studio studio.cameras()[3].world_from_camera;
+//   const StudioRig studio(scenario, seed);          // throws scenarios::InputError
+//   studio.cameras()[3].world_from_camera;
 #ifndef SIMBENCH_RECONSTRUCTION_STUDIO_H_
 #define SIMBENCH_RECONSTRUCTION_STUDIO_H_
 

@@ -6,7 +6,7 @@
 // rate; the system clock is steered along it (clock_steering.h). The interrupt's least delay is in
 // every host's clock alike, and so in no difference between them.
 //
-// A service. A slave without the line, or whose receiver sends no time within kPatience, reports
+// A service. A slave without the line, or whose receiver sends no time within 10 s, reports
 // that as its outcome.
 // Source: theory; PulseStamp::gnss in algorithms/ports/host.h.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_
