@@ -77,11 +77,11 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     sink().on_event(event);
   }
 
-  void on_stamp(const DeferredFrame& frame, GlobalTime global) override {
+  void on_stamp(const GatherFrame& frame) override {
     CapturedCamera& camera = cameras_[frame.source];
-    const CapturedCamera::Exposed& exposed = camera.exposed.at(frame.sample.sensor);
+    const CapturedCamera::Exposed& exposed = camera.exposed.at(frame.sensor);
     camera.frames.push_back(
-        {PulseTable::clamped_ns(global), frame.pulse, exposed.mid_exposure, exposed.counter});
+        {nanoseconds_of(frame.stamp), frame.tag, exposed.mid_exposure, exposed.counter});
   }
 
   void on_set(std::span<const GatherFrame>, bool, GlobalTime) override {}

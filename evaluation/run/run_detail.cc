@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "algorithms/device_time/unwrap.h"
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/unverified_scores.h"
@@ -161,15 +162,14 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     sink().on_event(event);
   }
 
-  void on_stamp(const DeferredFrame& frame, GlobalTime global) override {
-    const std::optional<std::size_t> index = frame_index(frame.source, frame.sample.sensor);
+  void on_stamp(const GatherFrame& frame) override {
+    const std::optional<std::size_t> index = frame_index(frame.source, frame.sensor);
     if (!index) return;
     FrameDetail& detail = run_.cameras[frame.source].frames[*index];
     detail.in_warm_up = false;
-    detail.pulse = std::max<std::int64_t>(frame.pulse, -1);
-    detail.evaluated =
-        frame.pulse >= run_.first_pulse && frame.pulse < run_.first_pulse + run_.pulses;
-    companions_[frame.source].global[*index] = global;
+    detail.pulse = std::max<std::int64_t>(frame.tag, -1);
+    detail.evaluated = frame.tag >= run_.first_pulse && frame.tag < run_.first_pulse + run_.pulses;
+    companions_[frame.source].global[*index] = frame.stamp;
   }
 
   void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) override {

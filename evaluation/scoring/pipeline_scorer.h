@@ -5,6 +5,10 @@
 // frame allocates nothing. A source is the scored stream of one camera, numbered like the camera.
 // Scores do not depend on how frames come in blocks (RecordingSink::on_frames), or alone.
 //
+// Its parts: frame_order.h tells which frames belong together, stamping.h is device_time over all
+// cameras, pulse_scores.h and set_counter.h score stamps and sets, score_parts.h what only some
+// captures have.
+//
 // The rules (docs/design.md section 8):
 //  - The truth (the pulse that exposed a frame), or GenLock order on a real genlock rig, tells
 //    which frames belong together. Other captures are scored over the sets that gathering emitted,
@@ -25,25 +29,15 @@
 #ifndef SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_
 #define SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_
 
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "algorithms/device_time/estimator_bank.h"
-#include "algorithms/device_time/unwrap.h"
 #include "algorithms/gathering/gathering.h"
-#include "algorithms/gathering/genlock_order.h"
-#include "evaluation/scoring/alignment_scores.h"
-#include "evaluation/scoring/kept_frames.h"
-#include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/score_observer.h"
-#include "evaluation/scoring/set_counter.h"
-#include "evaluation/scoring/unverified_scores.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {
@@ -66,6 +60,7 @@ struct ScorerSetup {
 class PipelineScorer final : public RecordingSink {
  public:
   explicit PipelineScorer(ScorerSetup setup);
+  ~PipelineScorer() override;
 
   // Notifies `observer` of stamps and sets. Call before the capture starts; it must outlive this.
   void watch(ScoreObserver& observer) { observer_ = &observer; }
@@ -79,73 +74,11 @@ class PipelineScorer final : public RecordingSink {
   SeedScore finish();
 
  private:
-  struct alignas(64) Source {
-    DeviceStampUnwrapper unwrapper;
-    GenlockOrder order;
-  };
-
-  struct Place {
-    std::int64_t pulse = 0;
-    bool warm_up = false;
-  };
-
-  void add(const PulseTruth& truth);
-  void add(const ClockAdjustment& adjustment);
-  void add(const DevicePoll& poll);
-  void add(const SyncOutcome& outcome);
-  void add(const AlignmentReport& report);
-  void add(const LedSighting& sighting);
-  void make_banks();
-  void learn_ground_truth(const FrameTruth* truth);
-  Place place_of(Source& source, const FrameRecord& frame, const FrameTruth* truth,
-                 DeviceTime sensor);
-  std::int64_t pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor);
-  bool in_warm_up(std::int64_t pulse);
-  void note_anchor(const FrameRecord& frame);
-  void note_exposures(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths);
-  // The block's way: device_time, then the table and gathering.
-  void finish_block();
-  void stamp(FrameBlock& block) const;
-  void settle(FrameBlock& block);
-  static GlobalTime oracle_stamp(const FrameTruth* truth);
-  // The shift that a relative estimator's stamps lack.
-  Nanoseconds anchor_shift() const;
-  void stamp_offline();
-  double second_amd_ms();
-  Nanoseconds period() const;
-  std::size_t expected_frames() const;
-  GroundTruth ground_truth() const;
+  class Capture;
 
   ScorerSetup setup_;
   ScoreObserver* observer_ = nullptr;
-  RigLayout layout_;
-  std::vector<Source> sources_;
-  std::vector<std::vector<std::uint32_t>> cameras_of_host_;
-  std::unique_ptr<EstimatorBank> bank_;         // null: the oracle
-  std::unique_ptr<EstimatorBank> second_bank_;  // with make_second_estimator
-  std::unique_ptr<Gatherer> gatherer_;
-  FrameBlock block_;        // the frames of one call that are treated alike
-  bool is_warm_up_ = true;  // the block
-  bool relative_ = false;
-  bool offline_ = false;
-  bool stamp_warm_up_ = false;
-  bool gather_warm_up_ = false;
-  bool warm_up_over_ = false;
-  std::optional<std::uint32_t> anchor_camera_;  // the master's first
-  std::optional<HostTime> anchor_;
-  std::optional<HostTime> first_arrival_;
-  std::int64_t first_true_pulse_ = 0;        // of the capture's first frame, with truth
-  std::optional<GroundTruth> ground_truth_;  // of the frames, from the first on
-  bool pulses_with_truth_ = false;
-  // Made when the capture starts.
-  std::optional<PulseTable> table_;
-  std::optional<SetCounter> sets_;
-  std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
-  std::optional<HostErrors> host_errors_;
-  std::optional<AlignmentScores> alignment_;  // with is_steered
-  std::optional<KeptFrames> kept_;            // for offline estimators
-  std::int64_t genlock_index_errors_ = 0;
-  std::vector<SyncOutcome> failures_;
+  std::unique_ptr<Capture> capture_;  // from the start on
 };
 
 }  // namespace simbench::evaluation

@@ -9,28 +9,19 @@
 #ifndef SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_
 #define SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_
 
-#include <cstdint>
 #include <span>
 
-#include "algorithms/device_time/device_time.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench::evaluation {
 
-struct DeferredFrame {
-  std::uint32_t source = 0;
-  std::int64_t pulse = 0;
-  DeviceSample sample;
-  GlobalTime delivered{};
-};
-
 class ScoreObserver {
  public:
   virtual ~ScoreObserver() = default;
-  // A stamp of device_time, for a frame after the warm-up; an offline estimator stamps when the
-  // capture has ended.
-  virtual void on_stamp(const DeferredFrame& frame, GlobalTime global) = 0;
+  // A frame after the warm-up, stamped by device_time; its tag is its pulse. An offline estimator
+  // stamps when the capture has ended.
+  virtual void on_stamp(const GatherFrame& frame) = 0;
   // A set that counts (set_counter.h); `complete` if no source is missing. `now` is the arrival of
   // the frame whose push emitted it.
   virtual void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) = 0;

@@ -111,12 +111,12 @@ void TraceRecorder::on_clocks(TrueTime at, std::span<const Nanoseconds> errors) 
   }
 }
 
-void TraceRecorder::on_stamp(const evaluation::DeferredFrame& frame, GlobalTime global) {
-  const FrameKey key = {frame.source, register_of(frame.sample.sensor)};
+void TraceRecorder::on_stamp(const GatherFrame& frame) {
+  const FrameKey key = {frame.source, register_of(frame.sensor)};
   if (key == under_way_key_) {
-    under_way_.stamp = global;
+    under_way_.stamp = frame.stamp;
   } else {
-    late_stamps_.push_back({key, global});
+    late_stamps_.push_back({key, frame.stamp});
   }
 }
 

@@ -45,7 +45,7 @@ class TraceRecorder final : public ForwardingSink,
   void on_message(const ObservedMessage& message) override;
   void on_clocks(TrueTime at, std::span<const Nanoseconds> errors) override;
 
-  void on_stamp(const evaluation::DeferredFrame& frame, GlobalTime global) override;
+  void on_stamp(const GatherFrame& frame) override;
   void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) override;
   void on_shift(Nanoseconds shift) override { shift_ = shift; }
 

@@ -167,8 +167,8 @@ void CameraWorld::plan_slot(TrueTime earliest) {
 }
 
 // Also a slot without a pulse takes its time.
-std::optional<CameraPulse> CameraWorld::begin_slot() {
-  const CameraPulse pulse{.slot = next_slot_++, .at = next_slot_at_};
+std::optional<ObservedPulse> CameraWorld::begin_slot() {
+  const ObservedPulse pulse{.pulse = next_slot_++, .at = next_slot_at_};
   const bool has_pulse = next_slot_has_pulse_;
   ++events_;
   plan_slot(pulse.at);
@@ -176,13 +176,13 @@ std::optional<CameraPulse> CameraWorld::begin_slot() {
   return pulse;
 }
 
-void CameraWorld::expose_by_pulse(const HostSide& host, const CameraPulse& pulse) {
+void CameraWorld::expose_by_pulse(const HostSide& host, const ObservedPulse& pulse) {
   for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
     SimStream& stream = cameras_.stream(id);
     if (stream.runs_free()) continue;
     const TrueTime at_camera = pulse.at + trigger_.delay_to(stream.camera);
     stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
-    const auto exposure = stream.shutter.on_pulse(at_camera, pulse.slot);
+    const auto exposure = stream.shutter.on_pulse(at_camera, pulse.pulse);
     if (exposure) expose(id, *exposure, pulse.at);
   }
 }

@@ -84,16 +84,11 @@ struct SimFrame {
   TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
 };
 
-struct CameraPulse {
-  std::int64_t slot = 0;
-  TrueTime at{};
-};
-
 // What happens from one pulse to the next, without what happens at `end`.
 struct CameraPeriod {
-  std::optional<CameraPulse> pulse;  // at its beginning; none: missing, or before the first
-  std::vector<SimFrame> frames;      // in the order of `at`
-  std::vector<CameraPoll> polls;     // in the order of `end`
+  std::optional<ObservedPulse> pulse;  // at its beginning; none: missing, or before the first
+  std::vector<SimFrame> frames;        // in the order of `at`
+  std::vector<CameraPoll> polls;       // in the order of `end`
   TrueTime end{};
 };
 
@@ -181,8 +176,8 @@ class CameraWorld {
   TrueTime begin_part(CameraPeriod& period);
   // Slot next_slot_, not before `earliest`.
   void plan_slot(TrueTime earliest);
-  std::optional<CameraPulse> begin_slot();
-  void expose_by_pulse(const HostSide& host, const CameraPulse& pulse);
+  std::optional<ObservedPulse> begin_slot();
+  void expose_by_pulse(const HostSide& host, const ObservedPulse& pulse);
   void expose_by_timers(HostSide& host, TrueTime before);
   std::uint32_t next_timer(std::uint32_t first) const;
   Exposure with_unsteady_start(SimStream& stream, const Exposure& planned) const;

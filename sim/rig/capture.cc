@@ -134,16 +134,16 @@ void Capture::report_through(TrueTime now) {
   if (next != TrueTime::max()) next_at_ = date(next);
 }
 
-void Capture::report_pulse(const CameraPulse& pulse) {
+void Capture::report_pulse(const ObservedPulse& pulse) {
   const TrueTime at = date(pulse.at);
-  if (pulse.slot >= slots_.first) {
+  if (pulse.pulse >= slots_.first) {
     auto& truth = std::get<PulseTruth>(pulse_event_);
-    truth.pulse = pulse.slot;
+    truth.pulse = pulse.pulse;
     truth.at = at;
     read_errors(clocks_, at, truth.host_errors);
     reports_.recorded(pulse_event_);
   }
-  reports_.pulse(pulse.slot, at);
+  reports_.pulse(pulse.pulse, at);
 }
 
 void Capture::report_poll(const CameraPoll& poll) {

@@ -82,7 +82,7 @@ class Capture {
   // The instant of what happens in the world `since_start`.
   TrueTime date(TrueTime since_start) const { return since_start + shift_; }
   void report_through(TrueTime now);
-  void report_pulse(const CameraPulse& pulse);
+  void report_pulse(const ObservedPulse& pulse);
   void report_poll(const CameraPoll& poll);
   void report_frames(TrueTime last);
   void report_block(std::size_t first, std::size_t end);
