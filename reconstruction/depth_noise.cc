@@ -7,18 +7,6 @@
 #include "sim/engine/random.h"
 
 namespace simbench::reconstruction {
-namespace {
-
-// The factor of z^2, in metres for z in metres.
-double sigma_factor(const scenarios::Studio& studio, double focal_px) {
-  return studio.subpixel_error_px / (focal_px * studio.stereo_baseline_mm * 1e-3);
-}
-
-}  // namespace
-
-double depth_sigma_m(const scenarios::Studio& studio, double focal_px, double depth_m) {
-  return sigma_factor(studio, focal_px) * depth_m * depth_m;
-}
 
 // Every pixel that sees something draws, also a missing one, so that limits change no other pixel.
 DepthMap measured_depth(const SeenDepth& seen, const scenarios::Studio& studio, double focal_px,
@@ -26,7 +14,8 @@ DepthMap measured_depth(const SeenDepth& seen, const scenarios::Studio& studio, 
   static constexpr sim::ComponentKey kDepthNoise("depth noise");
   sim::RandomStream draws(key.seed, kDepthNoise, key.camera, static_cast<std::uint64_t>(key.frame));
   boost::random::normal_distribution<double> standard_normal;
-  const double factor = sigma_factor(studio, focal_px);
+  // The factor of z^2, in metres for z in metres.
+  const double factor = studio.subpixel_error_px / (focal_px * studio.stereo_baseline_mm * 1e-3);
   const double least_cos = std::cos(studio.max_incidence_deg * std::numbers::pi / 180);
   DepthMap measured(seen.depth.width, seen.depth.height);
   for (std::size_t i = 0; i < seen.depth.depth_m.size(); ++i) {

@@ -27,9 +27,6 @@
 
 namespace simbench::reconstruction {
 
-// The standard deviation of the depth at `depth_m`, in metres.
-double depth_sigma_m(const scenarios::Studio& studio, double focal_px, double depth_m);
-
 struct NoiseKey {
   std::uint64_t seed = 1;
   std::uint32_t camera = 0;

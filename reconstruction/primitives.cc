@@ -120,21 +120,4 @@ TriangleMesh make_tapered_capsule(double radius_m, double end_radius_m, double l
   return revolve(rings, steps_for(2 * std::numbers::pi, step));
 }
 
-TriangleMesh make_box(const Eigen::Vector3d& sizes_m) {
-  for (const double size : sizes_m) require_positive(size, "a side");
-  TriangleMesh mesh;
-  for (int corner = 0; corner < 8; ++corner) {  // bits: x, y, z
-    const Eigen::Vector3d sign(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
-                               corner & 4 ? 0.5 : -0.5);
-    mesh.vertices.emplace_back(sign.cwiseProduct(sizes_m).cast<float>());
-  }
-  const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                           {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (const auto& face : faces) {
-    mesh.triangles.emplace_back(face[0], face[1], face[2]);
-    mesh.triangles.emplace_back(face[0], face[2], face[3]);
-  }
-  return mesh;
-}
-
 }  // namespace simbench::reconstruction

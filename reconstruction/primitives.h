@@ -20,7 +20,6 @@ TriangleMesh make_ellipsoid(const Eigen::Vector3d& semi_axes_m, double largest_e
 // If one sphere is inside the other, the other sphere alone.
 TriangleMesh make_tapered_capsule(double radius_m, double end_radius_m, double length_m,
                                   double largest_error_m);
-TriangleMesh make_box(const Eigen::Vector3d& sizes_m);
 
 }  // namespace simbench::reconstruction
 

@@ -227,19 +227,6 @@ TEST(Primitives, ACapsuleOfOneSphereInsideTheOtherIsTheLargerOne) {
   EXPECT_EQ(make_tapered_capsule(0.1, 0.1, 0, 1e-3).vertices, make_sphere(0.1, 1e-3).vertices);
 }
 
-TEST(Primitives, ABoxIsExact) {
-  const TriangleMesh box = make_box({0.5, 1.0, 2.0});
-  expect_closed(box);
-  expect_outward(box, Vector3d::Zero());
-  EXPECT_EQ(box.vertices.size(), 8U);
-  EXPECT_EQ(box.triangles.size(), 12U);
-  EXPECT_DOUBLE_EQ(volume_of(box), 1.0);
-  EXPECT_DOUBLE_EQ(area_of(box), 2 * (0.5 + 1.0 + 2.0));
-  for (const Eigen::Vector3f& vertex : box.vertices) {
-    EXPECT_EQ(vertex.cwiseAbs(), Eigen::Vector3f(0.25F, 0.5F, 1.0F));
-  }
-}
-
 TEST(Primitives, WhatHasNoSizeIsRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -0.1, nan, std::numeric_limits<double>::infinity()}) {
@@ -250,7 +237,6 @@ TEST(Primitives, WhatHasNoSizeIsRefused) {
     EXPECT_THROW(make_tapered_capsule(bad, 0.1, 0.3, 0.001), std::invalid_argument);
     EXPECT_THROW(make_tapered_capsule(0.1, bad, 0.3, 0.001), std::invalid_argument);
     EXPECT_THROW(make_tapered_capsule(0.1, 0.1, 0.3, bad), std::invalid_argument);
-    EXPECT_THROW(make_box({0.1, 0.1, bad}), std::invalid_argument);
   }
   EXPECT_THROW(make_tapered_capsule(0.1, 0.1, -0.3, 0.001), std::invalid_argument);
 }

@@ -15,6 +15,7 @@
 #include "reconstruction/primitives.h"
 #include "sim/engine/random.h"
 #include "tests/nonempty.h"
+#include "tests/reconstruction/box.h"
 
 namespace simbench::reconstruction {
 namespace {

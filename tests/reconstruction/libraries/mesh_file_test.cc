@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "reconstruction/primitives.h"
 #include "scenarios/loader.h"
 #include "tests/read_fault.h"
+#include "tests/reconstruction/box.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reconstruction {

@@ -6,6 +6,7 @@
 
 #include "reconstruction/primitives.h"
 #include "tests/nonempty.h"
+#include "tests/reconstruction/box.h"
 
 namespace simbench::reconstruction {
 namespace {

@@ -9,6 +9,7 @@
 #include "reconstruction/libraries/set_reconstruction.h"
 #include "reconstruction/primitives.h"
 #include "reconstruction/subject.h"
+#include "tests/reconstruction/box.h"
 #include "tests/reconstruction/studio_scenario.h"
 
 namespace simbench::reconstruction {
