@@ -85,11 +85,21 @@ class FrameControl {
   // The next frame, or nothing once the deadline has passed.
   virtual Task<std::optional<FrameArrival>> next_frame(SteadyTime deadline) = 0;
   // One frame is longer by this, or shorter if it is negative.
-  virtual Task<FrameControlReply> adjust_frame(Nanoseconds by) = 0;
-  virtual Task<FrameControlReply> insert_frame(Nanoseconds length) = 0;
-  virtual Task<FrameControlReply> set_frame_length(Nanoseconds length) = 0;
+  Task<FrameControlReply> adjust_frame(Nanoseconds by) {
+    return change(FrameControlKind::kAdjustFrame, by);
+  }
+  Task<FrameControlReply> insert_frame(Nanoseconds length) {
+    return change(FrameControlKind::kInsertFrame, length);
+  }
+  Task<FrameControlReply> set_frame_length(Nanoseconds length) {
+    return change(FrameControlKind::kFrameLength, length);
+  }
   // Returns when the camera has begun, or was refused. A time that is past is refused.
   virtual Task<FrameControlReply> start_at(HostTime at) = 0;
+
+ private:
+  // Any control but kStartAt.
+  virtual Task<FrameControlReply> change(FrameControlKind kind, Nanoseconds length) = 0;
 };
 
 // Why the camera refuses a frame of that length, empty if it does not: one home for all that

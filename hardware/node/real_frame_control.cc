@@ -22,16 +22,8 @@ Task<std::optional<FrameArrival>> RealFrameControl::next_frame(SteadyTime deadli
   return frames_.next(deadline);
 }
 
-Task<FrameControlReply> RealFrameControl::adjust_frame(Nanoseconds by) {
-  co_return steering_->control(FrameControlKind::kAdjustFrame, by);
-}
-
-Task<FrameControlReply> RealFrameControl::insert_frame(Nanoseconds length) {
-  co_return steering_->control(FrameControlKind::kInsertFrame, length);
-}
-
-Task<FrameControlReply> RealFrameControl::set_frame_length(Nanoseconds length) {
-  co_return steering_->control(FrameControlKind::kFrameLength, length);
+Task<FrameControlReply> RealFrameControl::change(FrameControlKind kind, Nanoseconds length) {
+  co_return steering_->control(kind, length);
 }
 
 Task<FrameControlReply> RealFrameControl::start_at(HostTime at) {

@@ -38,15 +38,13 @@ class RealFrameControl final : public FrameControl {
   std::uint32_t camera() const override { return camera_; }
   const FrameControlLimits& limits() const override { return steering_->limits(); }
   Task<std::optional<FrameArrival>> next_frame(SteadyTime deadline) override;
-  Task<FrameControlReply> adjust_frame(Nanoseconds by) override;
-  Task<FrameControlReply> insert_frame(Nanoseconds length) override;
-  Task<FrameControlReply> set_frame_length(Nanoseconds length) override;
   Task<FrameControlReply> start_at(HostTime at) override;
 
   // A frame of the camera.
   void deliver(const FrameArrival& frame) { frames_.deliver(frame); }
 
  private:
+  Task<FrameControlReply> change(FrameControlKind kind, Nanoseconds length) override;
   NodeClock& clock_;
   Host& host_;
   std::uint32_t camera_;

@@ -37,31 +37,19 @@ void SimFrameControl::push(FrameArrival frame) {
   feed_.push(frame);
 }
 
-FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value) {
-  FrameControlReply reply = requests_.reply(kind, value);
-  if (!reply.is_accepted()) return reply;
+Task<FrameControlReply> SimFrameControl::change(FrameControlKind kind, Nanoseconds length) {
+  FrameControlReply reply = requests_.reply(kind, length);
+  if (!reply.is_accepted()) co_return reply;
   RandomStream draws = control_draws(host_.world().run_seed, camera_, sent_++);
   const bool is_lost = draws.chance(model_.loss_probability);
   const double delay_ms = model_.delay_ms + draws.exponential(model_.delay_exponential_ms);
   if (!is_lost) {
-    const FrameCommand command{.kind = kind, .length = value};
+    const FrameCommand command{.kind = kind, .length = length};
     host_.world().context.engine().call_at(host_.true_now() + from_ms(delay_ms), [this, command] {
       host_.world().frames.steer(camera_, command);
     });
   }
-  return reply;
-}
-
-Task<FrameControlReply> SimFrameControl::adjust_frame(Nanoseconds by) {
-  co_return send(FrameControlKind::kAdjustFrame, by);
-}
-
-Task<FrameControlReply> SimFrameControl::insert_frame(Nanoseconds length) {
-  co_return send(FrameControlKind::kInsertFrame, length);
-}
-
-Task<FrameControlReply> SimFrameControl::set_frame_length(Nanoseconds length) {
-  co_return send(FrameControlKind::kFrameLength, length);
+  co_return reply;
 }
 
 Task<FrameControlReply> SimFrameControl::start_at(HostTime at) {

@@ -34,9 +34,6 @@ class SimFrameControl final : public FrameControl {
   std::uint32_t camera() const override { return camera_; }
   const FrameControlLimits& limits() const override { return requests_.limits(); }
   Task<std::optional<FrameArrival>> next_frame(SteadyTime deadline) override;
-  Task<FrameControlReply> adjust_frame(Nanoseconds by) override;
-  Task<FrameControlReply> insert_frame(Nanoseconds length) override;
-  Task<FrameControlReply> set_frame_length(Nanoseconds length) override;
   Task<FrameControlReply> start_at(HostTime at) override;
 
   // The camera's own queue.
@@ -46,7 +43,7 @@ class SimFrameControl final : public FrameControl {
   bool is_awaited() const { return feed_.is_awaited(); }
 
  private:
-  FrameControlReply send(FrameControlKind kind, Nanoseconds value);
+  Task<FrameControlReply> change(FrameControlKind kind, Nanoseconds length) override;
 
   SimHost& host_;
   std::uint32_t camera_;

@@ -106,16 +106,9 @@ FrameControlReply FakeCamera::send(FrameControlKind kind, Nanoseconds value, Nan
   return {.length = made};
 }
 
-Task<FrameControlReply> FakeCamera::adjust_frame(Nanoseconds by) {
-  co_return send(FrameControlKind::kAdjustFrame, by, steady_length_ + by);
-}
-
-Task<FrameControlReply> FakeCamera::insert_frame(Nanoseconds length) {
-  co_return send(FrameControlKind::kInsertFrame, length, length);
-}
-
-Task<FrameControlReply> FakeCamera::set_frame_length(Nanoseconds length) {
-  co_return send(FrameControlKind::kFrameLength, length, length);
+Task<FrameControlReply> FakeCamera::change(FrameControlKind kind, Nanoseconds length) {
+  const bool is_relative = kind == FrameControlKind::kAdjustFrame;
+  co_return send(kind, length, is_relative ? steady_length_ + length : length);
 }
 
 Task<FrameControlReply> FakeCamera::start_at(HostTime at) {

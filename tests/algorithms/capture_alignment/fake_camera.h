@@ -64,12 +64,10 @@ class FakeCamera final : public FrameControl {
   std::uint32_t camera() const override { return number_; }
   const FrameControlLimits& limits() const override { return script_.limits; }
   Task<std::optional<FrameArrival>> next_frame(SteadyTime deadline) override;
-  Task<FrameControlReply> adjust_frame(Nanoseconds by) override;
-  Task<FrameControlReply> insert_frame(Nanoseconds length) override;
-  Task<FrameControlReply> set_frame_length(Nanoseconds length) override;
   Task<FrameControlReply> start_at(HostTime at) override;
 
  private:
+  Task<FrameControlReply> change(FrameControlKind kind, Nanoseconds length) override;
   void schedule(Nanoseconds middle);
   void expose();
   void deliver(Nanoseconds middle, std::uint32_t counter);
