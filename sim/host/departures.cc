@@ -20,6 +20,10 @@ Departures::Departures(SimHost& host, const std::string& to)
       left_(host.world().context, host.name("transmit stamp to " + to)),
       passed_(host.world().context, host.name("hardware transmit stamp to " + to)) {}
 
+Nanoseconds Departures::to_card(MessageId first) {
+  return host_.stack().to_card(host_.true_now(), key_of_sent(first));
+}
+
 void Departures::on_left(MessageId first, std::size_t count, TrueTime passed) {
   if (!stamps_in_kernel_ && host_.nic() == nullptr) return;
   const HostTime stamp =
@@ -47,8 +51,7 @@ Task<std::optional<HostTime>> Departures::stamp(MessageId id, SteadyTime deadlin
   co_return message->left;
 }
 
-Task<std::optional<HardwareTime>> Departures::hardware_stamp(MessageId id, MessageKey key,
-                                                             SteadyTime deadline) {
+Task<std::optional<HardwareTime>> Departures::hardware_stamp(MessageId id, SteadyTime deadline) {
   const NicClock* nic = host_.nic();
   if (nic == nullptr) co_return std::nullopt;
   while (!has_left(id)) {
@@ -63,6 +66,7 @@ Task<std::optional<HardwareTime>> Departures::hardware_stamp(MessageId id, Messa
     const std::optional<TrueTime> look = host_.next_look(deadline);
     co_await passed_.wait(look ? std::min(*look, passed) : passed);
   }
+  const MessageKey key = key_of_sent(id);
   RandomStream draw(host_.world().run_seed, kHardwareTransmission, key.direction, key.message);
   co_return nic->stamp(passed, draw);
 }

@@ -1,14 +1,12 @@
-// When the messages of a channel left the host: the stamps of their departure.
+// A host's end of the network, as what sends through it knows it: when its messages left the host.
 //
 // A software stamp is the system clock, on its ticks, when the message leaves the stack; a hardware
 // stamp is the card's clock when its last bit passes the card. Stamps of the last 4096 messages are
 // kept. One coroutine may wait for each kind of stamp at a time.
 //
-//   Departures departures(host, "host1");
-//   const TrueTime at_card(from_ms(5));
-//   departures.on_left(7, 1, at_card);
+//   const MessageId id = co_await host.multicast().send(0xE0000181, Bytes(44));
 //   const SteadyTime until = host.steady_clock().now() + kStampTimeout;
-//   const std::optional<HostTime> stamp = co_await departures.stamp(7, until);
+//   const std::optional<HostTime> left = co_await host.multicast().stamp(id, until);
 #ifndef SIMBENCH_SIM_HOST_DEPARTURES_H_
 #define SIMBENCH_SIM_HOST_DEPARTURES_H_
 
@@ -20,25 +18,30 @@
 #include "algorithms/ports/host.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/message_stack.h"
+#include "sim/network/network.h"
 
 namespace simbench::sim {
 
 class SimHost;
 
-class Departures {
+class Departures : protected Endpoint {
  public:
-  // `host` must outlive this; `to` names where the messages go.
+  // `host` must outlive this and this its network's events; `to` names where the messages go.
   Departures(SimHost& host, const std::string& to);
 
-  // Messages `first` to `first + count - 1` leave the stack now; their last bit passes the card at
-  // `passed`. A message that was cancelled has left a gap before them.
-  void on_left(MessageId first, std::size_t count, TrueTime passed);
   // Nothing if the host does not stamp, the message did not leave until the deadline, or its stamp
   // is no longer kept.
   Task<std::optional<HostTime>> stamp(MessageId id, SteadyTime deadline);
-  // Its noise is drawn for the message of that key.
-  Task<std::optional<HardwareTime>> hardware_stamp(MessageId id, MessageKey key,
-                                                   SteadyTime deadline);
+  Task<std::optional<HardwareTime>> hardware_stamp(MessageId id, SteadyTime deadline);
+
+ protected:
+  // What the draws of a message of this end are keyed by.
+  virtual MessageKey key_of_sent(MessageId id) const = 0;
+  Nanoseconds to_card(MessageId first) final;
+  // A message that was cancelled has left a gap before them.
+  void on_left(MessageId first, std::size_t count, TrueTime passed) final;
+
+  SimHost& host_;
 
  private:
   struct Sent {
@@ -51,7 +54,6 @@ class Departures {
   // A message that has left; null if it never did or is no longer kept.
   const Sent* sent(MessageId id) const;
 
-  SimHost& host_;
   bool stamps_in_kernel_;
   WaitPoint left_;
   WaitPoint passed_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "algorithms/ports/assert.h"
 #include "sim/host/host_clocks.h"
@@ -18,13 +19,14 @@ ComponentKey send_cost_key(Transport transport) {
   if (transport == Transport::kAlignment) return kAlignmentSendCost;
   return transport == Transport::kStream ? kStreamSendCost : kDatagramSendCost;
 }
+constexpr ComponentKey kGroupSendCost("host: cost of sending to a group");
 constexpr ComponentKey kHardwareReceipt("host: hardware receive stamp");
 constexpr ComponentKey kLateWakeUp("host: late wake-up");
 
 }  // namespace
 
 SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
-    : host_(host),
+    : Departures(host, "host" + std::to_string(peer)),
       peer_(peer),
       transport_(transport),
       path_(host.world().network.open(host.id(), peer, transport, *this)),
@@ -32,8 +34,7 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
                         scenarios::StampPoint::kKernel),
       send_cost_ms_(host.world().hosts.send_cost_ms +
                     host.world().load.session(host.id(), peer).send_cost_ms),
-      arrived_(host.world().context, host.name("receive from host" + std::to_string(peer))),
-      departures_(host, "host" + std::to_string(peer)) {}
+      arrived_(host.world().context, host.name("receive from host" + std::to_string(peer))) {}
 
 Nanoseconds SimChannel::occupancy(MessageId id) const {
   const HostWorld& world = host_.world();
@@ -43,7 +44,7 @@ Nanoseconds SimChannel::occupancy(MessageId id) const {
 
 Task<MessageId> SimChannel::send(Bytes message) {
   const MessageId id = next_id_++;
-  const Nanoseconds stack = host_.stack().transmit(host_.true_now(), key_to_peer(id));
+  const Nanoseconds stack = host_.stack().transmit(host_.true_now(), key_of_sent(id));
   const Cpu::Turn turn = host_.cpu().reserve(occupancy(id) + stack);
   if (turn.end > host_.true_now()) {
     co_await sleep_until(host_.world().context, turn.end, "send");
@@ -96,10 +97,6 @@ void SimChannel::on_arrival() {
   arrived_.notify();
 }
 
-Nanoseconds SimChannel::to_card(MessageId first) {
-  return host_.stack().to_card(host_.true_now(), key_to_peer(first));
-}
-
 // When a receive() that was called then, and has found the message, returns.
 TrueTime SimChannel::returns_at(const ArrivedMessage& message, TrueTime called) {
   const TrueTime stamped = stamp_of(message);
@@ -111,7 +108,7 @@ TrueTime SimChannel::returns_at(const ArrivedMessage& message, TrueTime called) 
          (has_waited ? host_.stack().wake_up(stamped, key) : Nanoseconds(0));
 }
 
-MessageKey SimChannel::key_to_peer(MessageId id) const {
+MessageKey SimChannel::key_of_sent(MessageId id) const {
   return {.direction = direction_of(host_.id(), peer_), .message = key_of(id)};
 }
 
@@ -119,17 +116,29 @@ MessageKey SimChannel::key_from_peer(MessageId id) const {
   return {.direction = direction_of(peer_, host_.id()), .message = key_of(id)};
 }
 
-Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {
-  return departures_.stamp(id, deadline);
+MessageKey SimMulticast::key_of_sent(MessageId id) const {
+  return {.direction = direction_of(host_.id(), Groups::kEveryone), .message = id};
 }
 
-Task<std::optional<HardwareTime>> SimChannel::hardware_transmit_stamp(MessageId id,
-                                                                      SteadyTime deadline) {
-  return departures_.hardware_stamp(id, key_to_peer(id), deadline);
-}
-
-void SimChannel::on_left(MessageId first, std::size_t count, TrueTime passed) {
-  departures_.on_left(first, count, passed);
+Task<MessageId> SimMulticast::send(std::uint32_t group, Bytes message) {
+  const MessageId id = next_id_++;
+  const HostWorld& world = host_.world();
+  std::vector<SimNetwork::Recipient> recipients;
+  for (const PeerId member : world.network.groups().members(group)) {
+    if (member == host_.id()) continue;
+    recipients.push_back(host_.datagram_channel(member).next_of_group());
+  }
+  const MessageKey own = key_of_sent(id);
+  RandomStream draw(world.run_seed, kGroupSendCost, own.direction, own.message);
+  const double cost_ms =
+      world.hosts.send_cost_ms + draw.exponential(world.hosts.send_cost_exponential_ms);
+  const Nanoseconds stack = host_.stack().transmit(host_.true_now(), own);
+  const Cpu::Turn turn = host_.cpu().reserve(from_ms(cost_ms) + stack);
+  if (turn.end > host_.true_now()) {
+    co_await sleep_until(world.context, turn.end, "send to a group");
+  }
+  world.network.send_to_group(host_.id(), id, std::move(recipients), std::move(message), *this);
+  co_return id;
 }
 
 }  // namespace simbench::sim

@@ -1,4 +1,4 @@
-// A simulated host's channel to one peer.
+// A simulated host's channels, to one peer and to groups of hosts.
 //
 // send() occupies the host's CPU for
 //   send_cost_ms + Exp(send_cost_exponential_ms) + the session's load + the transmit stack:
@@ -20,6 +20,15 @@
 // Hardware stamps are those of the host's card, if it stamps (sim/host/host_clocks.h). A burst of
 // load (sim/network/load.h) makes the wake-up longer.
 //
+// A message to a group is sent once: one call, which occupies the CPU as above but for a session's
+// load, one passage of the stack and of the host's port; the switches replicate it
+// (sim/network/network.h). Each member receives its copy on its datagram channel to the sender, the
+// sender itself none. Numbers count over all groups of the host, and the draws of the sender's part
+// are keyed by them.
+//
+//   host.world().network.groups().join(0xE0000181, 3);
+//   const MessageId id = co_await host.multicast().send(0xE0000181, Bytes(44));
+//
 // Source: docs/reference/calibration.md section 2 (steps 1, 2 and 4); docs/design.md section 4.
 #ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
 #define SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
@@ -36,26 +45,27 @@
 
 namespace simbench::sim {
 
-class SimHost;
-
-class SimChannel final : public MessageChannel, private Endpoint {
+class SimChannel final : public MessageChannel, private Departures {
  public:
   // `host` must outlive the channel and the channel its network's events.
   SimChannel(SimHost& host, PeerId peer, Transport transport);
 
   Task<MessageId> send(Bytes message) override;
   Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) override;
-  Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) override;
+  Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) override {
+    return stamp(id, deadline);
+  }
   Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId id,
-                                                            SteadyTime deadline) override;
+                                                            SteadyTime deadline) override {
+    return hardware_stamp(id, deadline);
+  }
 
-  // The number that a message to a group takes on the way to the peer (sim/host/sim_multicast.h).
+  // The number that a message to a group takes on the way to the peer.
   SimNetwork::Recipient next_of_group() { return {.path = path_, .id = next_id_++}; }
 
  private:
   void on_arrival() override;
-  Nanoseconds to_card(MessageId first) override;
-  void on_left(MessageId first, std::size_t count, TrueTime passed) override;
+  MessageKey key_of_sent(MessageId id) const override;
 
   Nanoseconds occupancy(MessageId id) const;
   TrueTime returns_at(const ArrivedMessage& message, TrueTime called);
@@ -63,7 +73,6 @@ class SimChannel final : public MessageChannel, private Endpoint {
   static TrueTime stamp_of(const ArrivedMessage& message) {
     return message.stamped.value_or(message.at);
   }
-  MessageKey key_to_peer(MessageId id) const;
   MessageKey key_from_peer(MessageId id) const;
   // The key of the message's own draws.
   std::uint64_t key_of(MessageId id) const {
@@ -72,7 +81,6 @@ class SimChannel final : public MessageChannel, private Endpoint {
            (transport_ == Transport::kAlignment ? kOfAlignment : 0);
   }
 
-  SimHost& host_;
   PeerId peer_;
   Transport transport_;
   PathId path_;
@@ -80,7 +88,19 @@ class SimChannel final : public MessageChannel, private Endpoint {
   double send_cost_ms_;
   MessageId next_id_ = 0;
   WaitPoint arrived_;
-  Departures departures_;
+};
+
+class SimMulticast final : public Departures {
+ public:
+  explicit SimMulticast(SimHost& host) : Departures(host, "groups") {}
+
+  Task<MessageId> send(std::uint32_t group, Bytes message);
+
+ private:
+  void on_arrival() override {}
+  MessageKey key_of_sent(MessageId id) const override;
+
+  MessageId next_id_ = 0;
 };
 
 }  // namespace simbench::sim

@@ -7,7 +7,6 @@
 #include "sim/host/pulse_lines.h"
 #include "sim/host/sim_channel.h"
 #include "sim/host/sim_frame_control.h"
-#include "sim/host/sim_multicast.h"
 
 namespace simbench::sim {
 namespace {

@@ -6,17 +6,14 @@
 #include <utility>
 
 #include "sim/host/sim_channel.h"
-#include "sim/host/sim_multicast.h"
 #include "sim/programs/kernel_clock.h"
 
 namespace simbench::sim {
 namespace {
 
 constexpr std::size_t kTrailerBytes = 8;
-constexpr std::uint16_t kFirstFreePort = 32'768;
-constexpr std::uint16_t kLastFreePort = 60'999;
 constexpr std::uint32_t kBroadcast = 0xFFFFFFFF;
-constexpr std::uint32_t kNetBroadcast = HostNetwork::kFirstAddress | ~HostNetwork::kNetmask;
+constexpr std::uint32_t kNetBroadcast = processes::kFirstAddress | ~processes::kNetmask;
 
 bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }
 bool is_multicast(std::uint32_t address) { return address >> 28 == 0xE; }
@@ -64,36 +61,23 @@ int HostNetwork::bind(UdpSocket& socket, shim::Address address) {
   const bool is_own = address.host == 0 || address.host == this->address() ||
                       is_loopback(address.host) || group_of(address.host);
   if (!is_own) return EADDRNOTAVAIL;
-  if (address.port == 0) {
-    socket.local.host = address.host;
-    return bind_somewhere(socket);
-  }
-  if (is_taken(address, socket)) return EADDRINUSE;
+  if (address.port != 0 && is_taken(address, socket)) return EADDRINUSE;
+  return bind_to(socket, address);
+}
+
+int HostNetwork::bind_to(UdpSocket& socket, shim::Address address) {
+  const int error = address.port == 0 ? ports_.give(address, bound_) : 0;
+  if (error != 0) return error;
   socket.local = address;
   socket.number = ++sockets_bound_;
   bound_.push_back(&socket);
   return 0;
 }
 
-int HostNetwork::bind_somewhere(UdpSocket& socket) {
-  for (int tried = 0; tried <= kLastFreePort - kFirstFreePort; ++tried) {
-    const std::uint16_t port = next_port_;
-    next_port_ = port == kLastFreePort ? kFirstFreePort : static_cast<std::uint16_t>(port + 1);
-    const bool is_free = std::ranges::none_of(
-        bound_, [port](const UdpSocket* each) { return each->local.port == port; });
-    if (!is_free) continue;
-    socket.local.port = port;
-    socket.number = ++sockets_bound_;
-    bound_.push_back(&socket);
-    return 0;
-  }
-  return EADDRINUSE;
-}
-
 int HostNetwork::connect(UdpSocket& socket, shim::Address peer) {
   if (group_of(peer.host) == Groups::kEveryone && !socket.may_broadcast) return EACCES;
   if (socket.local.port == 0) {
-    const int error = bind_somewhere(socket);
+    const int error = bind_to(socket, socket.local);
     if (error != 0) return error;
   }
   socket.peer = peer;
@@ -135,7 +119,7 @@ Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload, 
   const std::optional<std::uint32_t> group = group_of(to.host);
   if (group == Groups::kEveryone && !socket.may_broadcast) co_return EACCES;
   if (socket.local.port == 0) {
-    const int error = bind_somewhere(socket);
+    const int error = bind_to(socket, socket.local);
     if (error != 0) co_return error;
   }
   if (payload.size() > kMostPayload) co_return EMSGSIZE;
@@ -160,8 +144,9 @@ Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload, 
     co_await send_to_group(socket, *group, std::move(leaving));
     co_return 0;
   }
-  if (to.host < kFirstAddress || to.host - kFirstAddress >= hosts_) co_return ENETUNREACH;
-  leaving.peer = to.host - kFirstAddress;
+  if (to.host < processes::kFirstAddress || to.host - processes::kFirstAddress >= hosts_)
+    co_return ENETUNREACH;
+  leaving.peer = to.host - processes::kFirstAddress;
   co_await send_to_peer(socket, std::move(leaving));
   co_return 0;
 }
@@ -181,7 +166,7 @@ Task<void> HostNetwork::send_to_group(UdpSocket& socket, std::uint32_t group, Le
   if (socket.hears_itself) deliver_to_all(leaving.datagram);
   if (leaving.stamps == 0) co_return;
   const std::optional<HostTime> left =
-      co_await multicast.transmit_stamp(leaving.message, host_.steady_clock().now());
+      co_await multicast.stamp(leaving.message, host_.steady_clock().now());
   keep_stamps(socket, left, std::move(leaving));
 }
 
@@ -219,7 +204,7 @@ Task<void> HostNetwork::stamp_departures() {
       stamp = co_await host_.datagram_channel(*leaving.peer)
                   .hardware_transmit_stamp(leaving.message, deadline);
     } else {
-      stamp = co_await host_.multicast().hardware_transmit_stamp(leaving.message, deadline);
+      stamp = co_await host_.multicast().hardware_stamp(leaving.message, deadline);
     }
     const auto found = std::ranges::find_if(
         bound_, [&](const UdpSocket* each) { return each->number == leaving.socket; });
@@ -246,8 +231,9 @@ Task<void> HostNetwork::pump(PeerId peer) {
     const shim::Address to{.host = boost::endian::load_big_u32(trailer),
                            .port = boost::endian::load_big_u16(trailer + 6),
                            .reserved = 0};
-    const shim::Address from{
-        .host = address_of(peer), .port = boost::endian::load_big_u16(trailer + 4), .reserved = 0};
+    const shim::Address from{.host = processes::address_of(peer),
+                             .port = boost::endian::load_big_u16(trailer + 4),
+                             .reserved = 0};
     bytes.resize(length);
     std::optional<HardwareTime> by_card;
     if (card_stamping_.arrivals) by_card = message->received_hardware;

@@ -2,7 +2,7 @@
 //
 // Host i has the address 10.0.0.1 + i in 10.0.0.0/16; a network has at most 65000 hosts. A datagram
 // goes over the port's channel to its host (algorithms/ports/host.h), one to a group or to all as
-// one message (sim/host/sim_multicast.h), with its destination and its ports behind the payload:
+// one message (sim/host/sim_channel.h), with its destination and its ports behind the payload:
 // eight bytes on the wire beside the headers that the network counts anyway.
 //
 //  - Unicast: to the socket that is bound to the port, unless that is connected to another; of
@@ -24,7 +24,7 @@
 //   HostNetwork network(host, 6);
 //   UdpSocket own;
 //   network.bind(own, {.host = 0, .port = 123});
-//   const int error = co_await network.send(own, {.host = network.address_of(0), .port = 123},
+//   const int error = co_await network.send(own, {.host = processes::address_of(0), .port = 123},
 //                                           Bytes(48), own.departure_stamps);
 #ifndef SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
 #define SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
@@ -69,8 +69,8 @@ struct UdpSocket {
   bool takes_all_groups = true;    // IP_MULTICAST_ALL
   bool hears_itself = true;        // IP_MULTICAST_LOOP
   std::set<std::uint32_t> groups{};
-  std::uint32_t sent = 0;
-  std::deque<QueuedDatagram> arrived{};
+  std::uint32_t sent = 0;                 // the number of the next datagram
+  std::deque<QueuedDatagram> arrived{};   // not received by the program yet
   std::deque<QueuedDatagram> departed{};  // the error queue: what has left, with its stamp
   std::function<void()> on_arrival{};
   std::uint64_t number = 0;  // since it was bound
@@ -78,8 +78,6 @@ struct UdpSocket {
 
 class HostNetwork {
  public:
-  static constexpr std::uint32_t kFirstAddress = processes::kFirstAddress;
-  static constexpr std::uint32_t kNetmask = processes::kNetmask;
   static constexpr std::size_t kMostQueued = 256;
   static constexpr std::size_t kMostGroups = 20;     // of a socket
   static constexpr std::size_t kMostPayload = 1472;  // one frame; fragments are not simulated
@@ -88,8 +86,7 @@ class HostNetwork {
   HostNetwork(SimHost& host, std::size_t hosts);
 
   std::size_t hosts() const { return hosts_; }
-  std::uint32_t address() const { return address_of(host_.id()); }
-  static std::uint32_t address_of(PeerId host) { return kFirstAddress + host; }
+  std::uint32_t address() const { return processes::address_of(host_.id()); }
 
   // These return an errno, or 0. A bound socket must be closed before it ends.
   int bind(UdpSocket& socket, shim::Address address);
@@ -128,7 +125,8 @@ class HostNetwork {
   };
 
   bool is_taken(shim::Address address, const UdpSocket& by) const;
-  int bind_somewhere(UdpSocket& socket);
+  // To a free port if the address has none.
+  int bind_to(UdpSocket& socket, shim::Address address);
   // The group that a message to this address is for, if it is for several hosts.
   static std::optional<std::uint32_t> group_of(std::uint32_t address);
   Task<void> send_to_peer(UdpSocket& socket, Leaving leaving);
@@ -145,7 +143,7 @@ class HostNetwork {
   std::vector<UdpSocket*> bound_;
   std::uint64_t sockets_bound_ = 0;
   std::map<std::uint32_t, int> joined_;  // how many sockets, by group
-  std::uint16_t next_port_ = 32'768;
+  FreePorts ports_;
   CardStamping card_stamping_{};
   std::deque<Leaving> leaving_;
   WaitPoint has_left_;

@@ -8,14 +8,12 @@
 #include <cerrno>
 #include <utility>
 
-#include "sim/programs/host_network.h"
+#include "processes/placeholders.h"
 
 namespace simbench::sim {
 namespace {
 
 constexpr std::size_t kHeadBytes = 5;  // the kind, the sender's port, the receiver's
-constexpr std::uint16_t kFirstFreeStreamPort = 32'768;
-constexpr std::uint16_t kLastFreeStreamPort = 60'999;
 
 Bytes credit_of(std::size_t bytes) {
   Bytes data(4);
@@ -26,7 +24,7 @@ Bytes credit_of(std::size_t bytes) {
 
 }  // namespace
 
-std::uint32_t HostStreams::own_address() const { return HostNetwork::address_of(host_.id()); }
+std::uint32_t HostStreams::own_address() const { return processes::address_of(host_.id()); }
 
 bool HostStreams::is_own(std::uint32_t address) const {
   return address == own_address() || address >> 24 == 127;
@@ -44,7 +42,7 @@ int HostStreams::bind(StreamSocket& stream, shim::Address address) {
   if (address.host != 0 && !is_own(address.host)) return EADDRNOTAVAIL;
   if (address.port == 0) {
     stream.local.host = address.host;
-    return bind_somewhere(stream);
+    return ports_.give(stream.local, streams_);
   }
   const bool is_taken =
       std::ranges::any_of(streams_, [&](const std::shared_ptr<StreamSocket>& each) {
@@ -58,26 +56,11 @@ int HostStreams::bind(StreamSocket& stream, shim::Address address) {
   return 0;
 }
 
-int HostStreams::bind_somewhere(StreamSocket& stream) {
-  for (int tried = 0; tried <= kLastFreeStreamPort - kFirstFreeStreamPort; ++tried) {
-    const std::uint16_t port = next_port_;
-    next_port_ =
-        port == kLastFreeStreamPort ? kFirstFreeStreamPort : static_cast<std::uint16_t>(port + 1);
-    const bool is_free = std::ranges::none_of(
-        streams_,
-        [port](const std::shared_ptr<StreamSocket>& each) { return each->local.port == port; });
-    if (!is_free) continue;
-    stream.local.port = port;
-    return 0;
-  }
-  return EADDRINUSE;
-}
-
 int HostStreams::listen(StreamSocket& stream, std::size_t backlog) {
   const bool listens = stream.state == StreamSocket::State::kListening;
   if (!listens && stream.state != StreamSocket::State::kFresh) return EINVAL;
   if (stream.local.port == 0) {
-    const int error = bind_somewhere(stream);
+    const int error = ports_.give(stream.local, streams_);
     if (error != 0) return error;
   }
   stream.state = StreamSocket::State::kListening;
@@ -98,10 +81,10 @@ Task<int> HostStreams::connect(StreamSocket& stream, shim::Address peer) {
   if (stream.state == StreamSocket::State::kConnecting) co_return EALREADY;
   if (stream.state == StreamSocket::State::kOpen) co_return EISCONN;
   if (stream.state != StreamSocket::State::kFresh) co_return ECONNABORTED;
-  const std::uint32_t number = peer.host - HostNetwork::kFirstAddress;
+  const std::uint32_t number = peer.host - processes::kFirstAddress;
   if (!is_own(peer.host) && number >= hosts_) co_return ENETUNREACH;
   if (stream.local.port == 0) {
-    const int error = bind_somewhere(stream);
+    const int error = ports_.give(stream.local, streams_);
     if (error != 0) co_return error;
   }
   stream.local.host = peer.host >> 24 == 127 ? peer.host : own_address();
@@ -228,7 +211,7 @@ Task<void> HostStreams::transmit(Segment segment) {
   boost::endian::store_big_u16(head + 1, segment.from.port);
   boost::endian::store_big_u16(head + 3, segment.to.port);
   std::ranges::copy(segment.data, message.begin() + kHeadBytes);
-  const PeerId peer = segment.to.host - HostNetwork::kFirstAddress;
+  const PeerId peer = segment.to.host - processes::kFirstAddress;
   MessageChannel& channel = host_.open_channel(peer, Transport::kStream);
   co_await channel.send(std::move(message));
 }
@@ -243,7 +226,7 @@ Task<void> HostStreams::pump(PeerId peer) {
     const auto* head = reinterpret_cast<const unsigned char*>(bytes.data());
     Segment segment{
         .kind = static_cast<SegmentKind>(head[0]),
-        .from = {.host = HostNetwork::address_of(peer),
+        .from = {.host = processes::address_of(peer),
                  .port = boost::endian::load_big_u16(head + 1),
                  .reserved = 0},
         .to = {.host = own_address(), .port = boost::endian::load_big_u16(head + 3), .reserved = 0},

@@ -22,6 +22,8 @@
 #ifndef SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
 #define SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
 
+#include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -42,15 +44,40 @@ struct StreamSocket {
   State state = State::kFresh;
   shim::Address local{};
   shim::Address peer{};
-  int error = 0;            // SO_ERROR
-  bool has_ended = false;   // nothing more is written
-  bool peer_ended = false;  // nothing more comes
-  std::deque<std::byte> input{};
-  std::size_t to_credit = 0;   // read, and not told to the peer yet
-  std::size_t on_the_way = 0;  // written, and not read by the peer as far as is known
-  std::size_t backlog = 0;
+  int error = 0;                  // SO_ERROR
+  bool has_ended = false;         // nothing more is written
+  bool peer_ended = false;        // nothing more comes
+  std::deque<std::byte> input{};  // arrived, and not read yet
+  std::size_t to_credit = 0;      // read, and not told to the peer yet
+  std::size_t on_the_way = 0;     // written, and not read by the peer as far as is known
+  std::size_t backlog = 0;        // the most that `accepted` holds
   std::deque<std::shared_ptr<StreamSocket>> accepted{};  // connected, and waiting for accept()
   std::function<void()> on_change{};
+};
+
+// Ports for the programs that ask for none, each the next free one.
+class FreePorts {
+ public:
+  // 0, or EADDRINUSE if those that are bound have them all.
+  template <class Bound>
+  int give(shim::Address& local, const Bound& bound) {
+    for (int tried = 0; tried <= kLast - kFirst; ++tried) {
+      const std::uint16_t port = next_;
+      next_ = port == kLast ? kFirst : static_cast<std::uint16_t>(port + 1);
+      if (std::ranges::any_of(bound, [port](auto& each) { return each->local.port == port; })) {
+        continue;
+      }
+      local.port = port;
+      return 0;
+    }
+    return EADDRINUSE;
+  }
+
+ private:
+  static constexpr std::uint16_t kFirst = 32'768;
+  static constexpr std::uint16_t kLast = 60'999;
+
+  std::uint16_t next_ = kFirst;
 };
 
 class HostStreams {
@@ -95,7 +122,6 @@ class HostStreams {
 
   std::uint32_t own_address() const;
   bool is_own(std::uint32_t address) const;
-  int bind_somewhere(StreamSocket& stream);
   std::shared_ptr<StreamSocket> find(const shim::Address& local, const shim::Address& peer) const;
   Task<void> transmit(Segment segment);
   Task<void> transmit(const StreamSocket& stream, SegmentKind kind, Bytes data = {});
@@ -108,7 +134,7 @@ class HostStreams {
   SimHost& host_;
   std::size_t hosts_;
   std::vector<std::shared_ptr<StreamSocket>> streams_;
-  std::uint16_t next_port_ = 32'768;
+  FreePorts ports_;
 };
 
 }  // namespace simbench::sim

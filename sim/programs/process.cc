@@ -1,6 +1,7 @@
 #include "sim/programs/process.h"
 
 #include <fmt/format.h>
+#include <linux/ptp_clock.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <time.h>
@@ -155,8 +156,8 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
 shim::Identity Process::identity() const {
   return {.process = static_cast<std::int32_t>(100 + number_),
           .address = network_.address(),
-          .netmask = HostNetwork::kNetmask,
-          .first_address = HostNetwork::kFirstAddress,
+          .netmask = processes::kNetmask,
+          .first_address = processes::kFirstAddress,
           .hosts = static_cast<std::uint32_t>(network_.hosts()),
           .has_card_clock = host_.nic() != nullptr ? 1U : 0U};
 }
@@ -209,6 +210,29 @@ Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
   if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const KernelClock::Answer given = co_await kernel_.adjust(wanted);
   co_return Answer{.value = given.state, .error = given.error, .data = bytes_of(given.now)};
+}
+
+// The network card.
+
+Task<Process::Answer> Process::read_card(std::int64_t count) {
+  if (count < 0 || count > PTP_MAX_SAMPLES) throw BadRequest("asked for too many readings");
+  Answer answer;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const CardClock::Reading reading = co_await card_.read();
+    if (reading.error != 0) co_return Answer{.error = reading.error};
+    const Bytes sample = bytes_of(reading.sample);
+    answer.data.insert(answer.data.end(), sample.begin(), sample.end());
+  }
+  co_return answer;
+}
+
+Process::Answer Process::card_stamping(std::int64_t wanted) {
+  if (host_.nic() == nullptr) return {.error = EOPNOTSUPP};
+  if (wanted >= 0) {
+    network_.set_card_stamping({.arrivals = (wanted & 1) != 0, .departures = (wanted & 2) != 0});
+  }
+  const CardStamping now = network_.card_stamping();
+  return {.value = (now.arrivals ? 1 : 0) | (now.departures ? 2 : 0)};
 }
 
 // Timers.

@@ -1,11 +1,10 @@
-#include "sim/host/sim_multicast.h"
-
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "sim/host/sim_channel.h"
 #include "tests/sim/host/sim_world.h"
 
 namespace simbench::sim {
@@ -33,7 +32,7 @@ Task<void> send_to_all(SimWorld& world, Bytes message, SentToGroup& sent) {
   SimMulticast& multicast = world.host(0).multicast();
   const MessageId id = co_await multicast.send(kPtpGroup, std::move(message));
   sent.returned_ms = world.now_ms();
-  sent.left = co_await multicast.transmit_stamp(id, kNoDeadline);
+  sent.left = co_await multicast.stamp(id, kNoDeadline);
 }
 
 TEST(SimMulticastTest, OneCallAndOnePassageOfThePortReachAllMembers) {
