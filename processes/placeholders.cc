@@ -5,6 +5,7 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +18,12 @@ constexpr char kChronyDrift[] = "{chrony_drift}";
 std::string dotted(std::uint32_t address) {
   return fmt::format("{}.{}.{}.{}", address >> 24, address >> 16 & 255, address >> 8 & 255,
                      address & 255);
+}
+
+// Whether it needs a drift file that the host does not have.
+bool lacks_drift(const std::string& text, const HostPlaces& places) {
+  if (places.drift) return false;
+  return text.find(kNtpDrift) != std::string::npos || text.find(kChronyDrift) != std::string::npos;
 }
 
 }  // namespace
@@ -36,9 +43,25 @@ std::string fill(std::string text, const HostPlaces& places) {
   return text;
 }
 
-bool lacks_drift(const std::string& text, const HostPlaces& places) {
-  if (places.drift) return false;
-  return text.find(kNtpDrift) != std::string::npos || text.find(kChronyDrift) != std::string::npos;
+std::vector<std::string> fill(std::vector<std::string> command, const HostPlaces& places) {
+  for (std::string& word : command) word = fill(std::move(word), places);
+  return command;
+}
+
+std::map<std::string, std::string> fill(std::map<std::string, std::string> environment,
+                                        const HostPlaces& places) {
+  for (auto& [name, value] : environment) value = fill(std::move(value), places);
+  return environment;
+}
+
+std::string make_folder(const std::filesystem::path& folder,
+                        const scenarios::HostPrograms& programs, const HostPlaces& places) {
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  for (const auto& [name, content] : programs.files) {
+    if (!lacks_drift(content, places)) std::ofstream(folder / name) << fill(content, places);
+  }
+  return folder.string();
 }
 
 std::optional<std::string> unknown_placeholder(const std::string& text) {

@@ -19,8 +19,11 @@
 #define SIMBENCH_PROCESSES_PLACEHOLDERS_H_
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "algorithms/ports/host.h"
 #include "scenarios/scenario.h"
@@ -42,8 +45,12 @@ struct HostPlaces {
 };
 
 std::string fill(std::string text, const HostPlaces& places);
-// Whether it needs a drift file that the host does not have.
-bool lacks_drift(const std::string& text, const HostPlaces& places);
+std::vector<std::string> fill(std::vector<std::string> command, const HostPlaces& places);
+std::map<std::string, std::string> fill(std::map<std::string, std::string> environment,
+                                        const HostPlaces& places);
+// The host's folder, made anew (an earlier run's drift file would be this one's), with the files.
+std::string make_folder(const std::filesystem::path& folder,
+                        const scenarios::HostPrograms& programs, const HostPlaces& places);
 
 // The first placeholder that there is none of.
 std::optional<std::string> unknown_placeholder(const std::string& text);

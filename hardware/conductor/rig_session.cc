@@ -16,7 +16,6 @@
 
 #include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
-#include "hardware/conductor/reply.h"
 #include "hardware/net/connect.h"
 #include "hardware/net/notice.h"
 #include "recording/counted.h"
@@ -33,6 +32,28 @@ constexpr Nanoseconds kSyncLimit = std::chrono::minutes(10);
 // Beyond the scenario's own time: delivery, start-up, a trigger that begins a little later.
 constexpr Nanoseconds kCaptureSlack = std::chrono::seconds(3);
 constexpr Nanoseconds kEndLimit = std::chrono::seconds(10);
+
+// A node may be of another version: a member that its reply lacks is an error of that host.
+template <class T>
+T reply_member(const nlohmann::json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end()) throw ProtocolError(fmt::format("its reply has no '{}'", key));
+  try {
+    return found->get<T>();
+  } catch (const nlohmann::json::exception&) {
+    throw ProtocolError(fmt::format("its reply's '{}' has another type", key));
+  }
+}
+
+// The problems of a reply on one line: "camera 018322071234: unplugged; ...".
+std::string problems_in(const nlohmann::json& reply) {
+  std::vector<std::string> lines;
+  for (const nlohmann::json& problem : reply_member<nlohmann::json>(reply, "problems")) {
+    lines.push_back(fmt::format("camera {}: {}", reply_member<std::string>(problem, "camera"),
+                                reply_member<std::string>(problem, "text")));
+  }
+  return fmt::format("{}", fmt::join(lines, "; "));
+}
 
 std::string fresh_session_id() {
   std::string id;

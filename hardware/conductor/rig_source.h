@@ -56,7 +56,7 @@ struct RigSourceSettings {
 // A host after a session.
 struct HostReport {
   std::string name;
-  bool lost = false;
+  bool lost = false;          // its node could not be reached until the end
   NodeOscillator oscillator;  // of its steady clock against its kernel's monotonic clock
 };
 

@@ -26,14 +26,6 @@ const unsigned char* plain(std::span<const std::byte> bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
-void seal_into(std::span<std::byte> to, const KeyBytes& key, std::uint64_t counter,
-               std::span<const std::byte> header, std::span<const std::byte> message) {
-  const NonceBytes nonce = nonce_of(counter);
-  crypto_aead_chacha20poly1305_ietf_encrypt(reinterpret_cast<unsigned char*>(to.data()), nullptr,
-                                            plain(message), message.size(), plain(header),
-                                            header.size(), nullptr, nonce.data(), key.data());
-}
-
 }  // namespace
 
 void start_sodium() {
@@ -66,15 +58,11 @@ Bytes header_and_sealed(const KeyBytes& key, std::uint64_t counter,
                         std::span<const std::byte> header, std::span<const std::byte> message) {
   Bytes all(header.size() + message.size() + kSealBytes);
   std::copy(header.begin(), header.end(), all.begin());
-  seal_into(std::span(all).subspan(header.size()), key, counter, header, message);
+  const NonceBytes nonce = nonce_of(counter);
+  crypto_aead_chacha20poly1305_ietf_encrypt(
+      reinterpret_cast<unsigned char*>(all.data()) + header.size(), nullptr, plain(message),
+      message.size(), plain(header), header.size(), nullptr, nonce.data(), key.data());
   return all;
-}
-
-Bytes seal(const KeyBytes& key, std::uint64_t counter, std::span<const std::byte> header,
-           std::span<const std::byte> message) {
-  Bytes sealed(message.size() + kSealBytes);
-  seal_into(sealed, key, counter, header, message);
-  return sealed;
 }
 
 std::optional<Bytes> open_sealed(const KeyBytes& key, std::uint64_t counter,

@@ -7,8 +7,9 @@
 // libsodium's ciphers.
 //
 //   const KeyBytes key = derive_key(secret, "datagrams", transcript);
-//   Bytes sealed = seal(key, counter++, header, message);
-//   std::optional<Bytes> opened = open_sealed(key, counter, header, sealed);
+//   const Bytes sent = header_and_sealed(key, counter++, header, message);
+//   const auto sealed = std::span(sent).subspan(kFrameHeaderBytes);
+//   const std::optional<Bytes> opened = open_sealed(key, 0, header, sealed);
 //
 // A hello is the first message of each side, in the clear: 46 bytes.
 //
@@ -74,9 +75,6 @@ KeyBytes derive_key(const KeyBytes& key, std::string_view purpose,
 // protected by the seal.
 Bytes header_and_sealed(const KeyBytes& key, std::uint64_t counter,
                         std::span<const std::byte> header, std::span<const std::byte> message);
-// Returns the sealed message alone.
-Bytes seal(const KeyBytes& key, std::uint64_t counter, std::span<const std::byte> header,
-           std::span<const std::byte> message);
 // Nothing if `sealed` was not sealed with these arguments.
 std::optional<Bytes> open_sealed(const KeyBytes& key, std::uint64_t counter,
                                  std::span<const std::byte> header,

@@ -8,7 +8,6 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -111,14 +110,8 @@ std::string NodePrograms::make_folder(PeerId host) const {
                                      ? std::filesystem::path(temporary_.path())
                                      : std::filesystem::absolute(settings_.log_folder);
   folder /= fmt::format("host{}", host);
-  std::filesystem::remove_all(folder);  // an earlier session's drift file would be this one's
-  std::filesystem::create_directories(folder);
-  const processes::HostPlaces places{.host = host, .interface = settings_.interface.c_str()};
-  for (const auto& [name, content] : settings_.programs.files) {
-    if (processes::lacks_drift(content, places)) continue;
-    std::ofstream(folder / name) << processes::fill(content, places);
-  }
-  return folder.string();
+  return processes::make_folder(folder, settings_.programs,
+                                {.host = host, .interface = settings_.interface.c_str()});
 }
 
 Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> commands) {
@@ -127,16 +120,12 @@ Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> comm
   const processes::HostPlaces places{.host = host.id(), .interface = settings_.interface.c_str()};
   for (const HostPrograms::Command& command : commands) {
     const auto path = settings_.paths.find(command.front());
-    Child::Settings child{.command = {},
+    Child::Settings child{.command = processes::fill(command, places),
                           .program = path == settings_.paths.end() ? "" : path->second,
-                          .environment = {},
+                          .environment = processes::fill(settings_.programs.environment, places),
                           .folder = folder,
                           .log_name = scenarios::program_name(command),
                           .shim = settings_.shim};
-    for (const std::string& word : command) child.command.push_back(processes::fill(word, places));
-    for (const auto& [name, value] : settings_.programs.environment) {
-      child.environment[name] = processes::fill(value, places);
-    }
     programs.start(std::move(child));
   }
   std::optional<Nanoseconds> duration;

@@ -16,14 +16,20 @@
 #define SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/intrusive/list.hpp>
+#include <boost/random/mersenne_twister.hpp>
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "algorithms/ports/host.h"
 #include "hardware/camera/camera.h"
 #include "hardware/clock/node_clock.h"
 #include "hardware/net/peer_network.h"
+#include "hardware/node/node_frame_feed.h"
+#include "hardware/node/real_frame_control.h"
 #include "recording/event.h"
 
 namespace simbench::hardware {
@@ -36,18 +42,18 @@ class RealHost final : public Host {
            EventSink sink);
   ~RealHost() override;
 
-  PeerId id() const override;
-  HostClock& clock() override;
-  const SteadyClock& steady_clock() const override;
-  FrameFeed* frame_feed() override;
+  PeerId id() const override { return id_; }
+  HostClock& clock() override { return clock_; }
+  const SteadyClock& steady_clock() const override { return steady_clock_; }
+  FrameFeed* frame_feed() override { return &frames_; }
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
   Task<void> sleep_for(Nanoseconds interval) override;
   Task<void> sleep_until(HostTime at) override;
   double random_uniform() override;
-  void report_exchange(const Exchange& exchange) override;
-  void report_outcome(const SyncOutcome& outcome) override;
-  void report_alignment(const AlignmentReport& report) override;
-  std::span<FrameControl* const> frame_controls() override;
+  void report_exchange(const Exchange& exchange) override { sink_(ExchangeEvent{id_, exchange}); }
+  void report_outcome(const SyncOutcome& outcome) override { sink_(outcome); }
+  void report_alignment(const AlignmentReport& report) override { sink_(report); }
+  std::span<FrameControl* const> frame_controls() override { return controls_; }
 
   // Observes the clock no longer, so that another host may. The destructor does the same.
   void release_clock();
@@ -57,8 +63,37 @@ class RealHost final : public Host {
   void deliver(const FrameArrival& frame);
 
  private:
-  class State;
-  std::unique_ptr<State> state_;
+  class NodeSteadyClock final : public SteadyClock {
+   public:
+    explicit NodeSteadyClock(const NodeClock& clock) : clock_(clock) {}
+    SteadyTime now() const override { return clock_.steady_at(monotonic_now()); }
+
+   private:
+    const NodeClock& clock_;
+  };
+
+  // A pending sleep_until(); leaves the list when its coroutine ends or is destroyed.
+  struct Sleeper : boost::intrusive::list_base_hook<
+                       boost::intrusive::link_mode<boost::intrusive::auto_unlink>> {
+    explicit Sleeper(boost::asio::io_context& context) : timer(context) {}
+    boost::asio::steady_timer timer;
+  };
+
+  void on_adjustment(ClockAdjustment adjustment);
+
+  boost::asio::io_context& context_;
+  PeerId id_;
+  NodeClock& clock_;
+  PeerNetwork& network_;
+  EventSink sink_;
+  NodeSteadyClock steady_clock_;
+  NodeFrameFeed frames_;
+  // All that there were, as coroutines may hold them, and those of the cameras in use.
+  std::vector<std::unique_ptr<RealFrameControl>> all_controls_;
+  std::vector<FrameControl*> controls_;
+  bool observes_ = true;  // the clock
+  boost::random::mt19937_64 engine_;
+  boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;
 };
 
 }  // namespace simbench::hardware

@@ -16,8 +16,6 @@ constexpr ComponentKey kBeaconPhase("wifi: phase of the beacons");
 constexpr double kBytesBeyondEthernet = 24;
 constexpr double kAcknowledgementBytes = 14;
 
-constexpr Nanoseconds from_us(double us) { return from_ms(us * 1e-3); }
-
 }  // namespace
 
 WifiCell::WifiCell(Engine& engine, const scenarios::Wifi& wifi, std::uint64_t run_seed,

@@ -5,7 +5,6 @@
 
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +18,6 @@ namespace {
 
 using processes::fill;
 using processes::HostPlaces;
-using processes::lacks_drift;
 using scenarios::HostPrograms;
 
 // The programs of one host.
@@ -34,17 +32,13 @@ class RunningPrograms {
     const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
     const auto path = settings.paths.find(command.front());
     Child::Settings child{
-        .command = {},
+        .command = fill(command, places),
         .program = path == settings.paths.end() ? "" : path->second,
-        .environment = {},
+        .environment = fill(settings.programs.environment, places),
         .folder = folder,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim};
     if (settings.patience) child.patience = *settings.patience;
-    for (const std::string& word : command) child.command.push_back(fill(word, places));
-    for (const auto& [name, value] : settings.programs.environment) {
-      child.environment[name] = fill(value, places);
-    }
     processes_.emplace_back(host_, network_, kernel_, card_, child,
                             static_cast<std::uint32_t>(number));
   }
@@ -122,14 +116,8 @@ std::string ProgramSync::make_folder(SimHost& host) {
              fmt::format("seed{}", host.world().run_seed);
   }
   folder /= fmt::format("host{}", host.id());
-  std::filesystem::remove_all(folder);  // an earlier run's drift file would be this one's
-  std::filesystem::create_directories(folder);
-  const HostPlaces places{.host = host.id(), .drift = host.stored_frequency()};
-  for (const auto& [name, content] : settings_.programs.files) {
-    if (lacks_drift(content, places)) continue;
-    std::ofstream(folder / name) << fill(content, places);
-  }
-  return folder.string();
+  return processes::make_folder(folder, settings_.programs,
+                                {.host = host.id(), .drift = host.stored_frequency()});
 }
 
 void ProgramSync::fail(Host& host, const std::string& ending) {
