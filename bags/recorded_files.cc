@@ -24,7 +24,7 @@ std::vector<std::string> files_of(const std::string& path) {
   return fs::is_directory(path) ? rosbag2_files(path) : std::vector<std::string>{path};
 }
 
-// Of a file, or of all bags of a folder.
+// The size of a file, or of all bags of a folder.
 std::uint64_t size_of(const std::string& path) {
   std::uint64_t bytes = 0;
   for (const std::string& file : files_of(path)) {

@@ -50,7 +50,7 @@ class RecordHeader {
   RecordKind kind() const { return kind_; }
   std::string_view fields() const { return fields_; }
   std::uint32_t data_size() const { return data_size_; }
-  // Of the header with its two lengths.
+  // The bytes of the header with its two lengths.
   std::uint64_t size() const { return fields_.size() + 8; }
 
  private:

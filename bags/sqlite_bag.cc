@@ -2,7 +2,7 @@
 //
 // Messages are read by their ids, which is the order in which they were written; rosbag2 itself
 // reads by time of arrival, which is the same order within a topic. Ids follow the file, need no
-// index, and reading goes on behind pages that are damaged. Of each message only the head is read
+// index, and reading goes on behind pages that are damaged. Only the head of each message is read
 // (sqlite3_blob_read); SQLite does not visit the pages behind it.
 #include <sqlite3.h>
 #include <zstd.h>

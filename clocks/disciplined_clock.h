@@ -3,7 +3,7 @@
 //
 // The clock reads setting + (1 + rate) * (what the oscillator has counted since the setting). A
 // step, a change of rate, a slew and the planned end of that slew each begin a setting, which is
-// valid until the next one. So the clock can be read at any instant: under the setting of that
+// valid until the next one. The clock can thus be read at any instant: under the setting of that
 // instant if it is among the last `history`, else under the oldest one kept.
 //
 // Contract

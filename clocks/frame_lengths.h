@@ -54,7 +54,7 @@ class FrameLengths {
  public:
   explicit FrameLengths(const FrameControlLimits& limits, std::int64_t insert_stretches = 1);
 
-  // Of that frame, if the exposure fits into it.
+  // The length of that frame, if the exposure fits into it.
   Nanoseconds of(std::int64_t frame) const;
   // The exposure of that frame's picture, if a control changed it.
   std::optional<Nanoseconds> exposure(std::int64_t frame) const;

@@ -264,7 +264,7 @@ std::string Child::how_it_ended(bool itself, int status) const {
                      has_asked_ ? "" : ", and the preloaded library was never loaded");
 }
 
-// Of a log that may be long, and need not have lines.
+// The log may be long, and need not have lines.
 std::string Child::last_line() const {
   constexpr std::streamoff kMost = 400;
   std::ifstream log(log_, std::ios::binary | std::ios::ate);

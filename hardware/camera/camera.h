@@ -108,7 +108,7 @@ class CameraSteering {
   virtual FrameControlReply start_at(MonotonicTime at) = 0;
 };
 
-// Of the cameras that have one, by their numbers on the rig.
+// The steerings of the cameras that have one, by their numbers on the rig.
 using CameraSteerings = std::map<std::uint32_t, std::shared_ptr<CameraSteering>>;
 
 class Camera {

@@ -6,8 +6,8 @@
 // had its length too.
 //
 // The frame that is in progress is the last one that was passed: a control counts from the frame
-// `latency_frames` after it, one at least, as the next exposure may have begun. So of latency 2,
-// the third frame to come is the first that moves.
+// `latency_frames` after it, one at least, as the next exposure may have begun. With a latency
+// of 2, the third frame to come is the first that moves.
 //
 // Pure. Lengths are taken for times of the host: the camera's oscillator, some tens of ppm off,
 // would move 10 ms by less than a microsecond.

@@ -16,7 +16,7 @@
 // Frames carry the recorded counter, exposure and device stamps. `arrived` is the instant at which
 // the frame was due, to the nanosecond, and `backend` as long before it as in the recording. The
 // frame is handed over as soon after that as this machine's timers allow: their lateness is not in
-// the stamps. Of the settings only the streams and the steering are used: the wanted streams are
+// the stamps. Only the streams and the steering of the settings are used: the wanted streams are
 // played, and one that the recording lacks is refused.
 //
 // Steering. Where the settings say how, frames follow the controls of CameraSteering: all of a

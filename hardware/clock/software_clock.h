@@ -31,7 +31,7 @@ namespace simbench::hardware {
 
 class SoftwareClock : public NodeClock {
  public:
-  // Of tests: what a change costs, each time anew, and the share of it after which it counts.
+  // What a change costs in tests, each time anew, and the share of it after which it counts.
   struct SetCost {
     double cost_ms = 0;
     double log_sigma = 0;  // factor exp(N(0, this))

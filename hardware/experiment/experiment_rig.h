@@ -43,9 +43,9 @@ namespace simbench::hardware {
 
 // How a node's clock starts.
 struct ClockStart {
-  double offset_ms = 0;  // of its system clock
-  double skew_ppm = 0;   // of its oscillator
-  double set_cost_factor = 1;
+  double offset_ms = 0;        // of its system clock
+  double skew_ppm = 0;         // of its oscillator
+  double set_cost_factor = 1;  // of the scenario's cost of a change
 };
 
 // The limits of draw_clock_starts().

@@ -37,11 +37,11 @@ struct StackDelaySettings {
   std::function<bool()> cancelled{};  // may be empty; then fewer messages are returned
 };
 
-// Of each message, in the order of sending.
+// The delays of each message, in the order of sending, as drawn above.
 struct StackDelays {
-  std::vector<double> transmit_us;
-  std::vector<double> passage_us;
-  std::vector<double> wake_up_us;
+  std::vector<double> transmit_us;  // from the send call to the software stamp of the departure
+  std::vector<double> passage_us;   // from that stamp to the one of the arrival
+  std::vector<double> wake_up_us;   // from that one to the return of recvmsg()
 };
 
 StackDelays measure_stack_delays(const StackDelaySettings& settings);

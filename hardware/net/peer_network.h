@@ -59,7 +59,7 @@ struct NetworkStatistics {
   std::uint64_t refused_rate = 0;       // beyond the bucket
   std::uint64_t refused_connections = 0;
   std::uint64_t dropped_full_queue = 0;
-  std::uint64_t reconnections = 0;
+  std::uint64_t reconnections = 0;  // of streams that were lost
 };
 
 class PeerNetwork {

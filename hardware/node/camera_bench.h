@@ -97,7 +97,7 @@ class CameraBench {
   // Opens and sets the cameras, after closing those that are open. A camera that should be steered
   // and cannot is a problem.
   Task<CameraProblems> prepare(CameraSettings settings);
-  // Of those that are prepared.
+  // The steerings of the cameras that are prepared.
   Task<CameraSteerings> steerings();
   // Starts those that are prepared.
   Task<CameraProblems> start(std::shared_ptr<CameraFeed> feed);

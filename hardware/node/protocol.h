@@ -30,7 +30,7 @@
 // clang-format on
 //
 // A connection belongs to the session that it began, or that one of its requests named: any request
-// may carry "session". A request without it is about the connection's session. So a conductor that
+// may carry "session". A request without it is about the connection's session. A conductor that
 // has lost its connection opens another and names its session. A begin over a connection that has a
 // session ends that one first.
 //

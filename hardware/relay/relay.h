@@ -52,13 +52,13 @@ struct RelaySettings {
 };
 
 struct RelayStatistics {
-  LawCounts law;  // of all directions
-  std::uint64_t dropped_full = 0;
-  std::uint64_t dropped_rate = 0;
-  std::uint64_t streams = 0;         // connections relayed
-  std::uint64_t broken_streams = 0;  // of those, ended because they were no SecureStream
-  std::optional<Nanoseconds> late_p50;
-  std::optional<Nanoseconds> late_p95;
+  LawCounts law;                        // of all directions
+  std::uint64_t dropped_full = 0;       // found no room in the queue
+  std::uint64_t dropped_rate = 0;       // came too fast
+  std::uint64_t streams = 0;            // connections relayed
+  std::uint64_t broken_streams = 0;     // of those, ended because they were no SecureStream
+  std::optional<Nanoseconds> late_p50;  // how late half of the messages left at most
+  std::optional<Nanoseconds> late_p95;  // and 95 of 100
 };
 
 class Relay {

@@ -4,7 +4,7 @@
 // Member i of a NetworkSandbox has the address 10.0.0.1 + i at the far end of "wire<i>" (hardware/
 // experiment/network_sandbox.h). Each UDP datagram that it sends over IPv4 arrives at the member of
 // its destination by a law of its own for the direction (network_law.h); one to a group or to all
-// at every other member, by each one's law. So any program's ports and multicasts pass unchanged.
+// at every other member, by each one's law. Any program's ports and multicasts pass unchanged.
 // ARP passes at once. Nothing else passes: no TCP, no IPv6, no fragments, no frames to other
 // addresses. UDP checksums, which the sender leaves to its card, are left out.
 //
@@ -37,8 +37,8 @@ struct CarriedFrame {
   std::optional<PeerId> to{};  // nothing: all others
 };
 
-// Of a frame between `members` members; nothing if it is not carried. A datagram's checksum is then
-// taken out.
+// Nothing if a frame between `members` members is not carried. The checksum of a datagram that is
+// carried is taken out.
 std::optional<CarriedFrame> look_at_frame(std::span<std::byte> frame, std::size_t members);
 
 class Wires {
@@ -55,7 +55,7 @@ class Wires {
   Wires& operator=(const Wires&) = delete;
 
   void stop();
-  // Of all directions.
+  // The sums over all directions.
   LawCounts counts() const;
   // What found no room in the queue, or came too fast.
   std::uint64_t dropped() const;

@@ -3,7 +3,7 @@
 // Behaviour by sync mode (docs/reference/d455.md section 2, docs/design.md section 7):
 //  - genlock (depth only): waits without limit; a pulse starts an exposure. Pulses are then ignored
 //    for two mode periods less a guard (the camera's own periods, an assumption about the guard),
-//    and while the exposure lasts. So a trigger at the full mode rate yields every second pulse,
+//    and while the exposure lasts. A trigger at the full mode rate thus yields every second pulse,
 //    and a slow camera without a guard yields every second pulse of a half-rate trigger too.
 //  - slave (depth; colour too in full slave): the exposure *ends* one mode period after the pulse,
 //    so a longer exposure starts earlier and arrives no later. Pulses closer together than a mode
@@ -42,15 +42,15 @@ struct ShutterSettings {
   double mode_period_ns = 0;  // of true time: the camera's oscillator makes its periods
   Nanoseconds exposure{};
   Nanoseconds readout{};
-  Nanoseconds trigger_to_exposure{};
-  double guard_fraction = 0;
-  double free_run_after_periods = 0;
+  Nanoseconds trigger_to_exposure{};  // what lies between a pulse and what it starts
+  double guard_fraction = 0;          // of a mode period, by which pulses may come early
+  double free_run_after_periods = 0;  // a slave without pulses waits so many periods
 };
 
 struct Exposure {
-  std::int64_t pulse = kNoPulse;
-  TrueTime start{};  // of the first row
-  TrueTime end{};    // of the last row
+  std::int64_t pulse = kNoPulse;  // the slot of the pulse that began it
+  TrueTime start{};               // of the first row
+  TrueTime end{};                 // of the last row
 };
 
 class Shutter {

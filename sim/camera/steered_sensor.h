@@ -42,7 +42,7 @@ namespace simbench::sim {
 struct SteeredSensorSettings {
   FrameControlLimits limits;
   Nanoseconds readout{};
-  double jitter_sigma_ns = 0;
+  double jitter_sigma_ns = 0;         // of the instant of a readout
   std::int64_t insert_stretches = 1;  // frames that get the length of an inserted one
   double insert_noise_sigma_ns = 0;   // of that length, each frame's own
   // Ideal: the instants at which the exposures should have their middle.

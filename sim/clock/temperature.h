@@ -52,7 +52,7 @@ class TemperatureCourse {
 
   // Above the mean.
   double kelvin(TrueTime t) const;
-  // Of that, from true zero to `t`, which may lie before it.
+  // The integral of kelvin() from true zero to `t`, which may lie before it.
   double integral_ks(TrueTime t) const { return since_begin_ks(t) - at_zero_ks_; }
 
  private:

@@ -14,8 +14,8 @@ void EventQueue::insert_into_full(std::int64_t time_ns, std::uint64_t payload,
   insert({.time_ns = time_ns, .payload = payload, .sequence = sequence});
 }
 
-// A tournament of its full size spills into the ladder. Not so while a run as long is being popped,
-// which would have to go back with it: then a larger tournament costs less.
+// A tournament of its full size spills into the ladder. While a run as long is being popped, which
+// would have to go back with it, a larger tournament costs less.
 void EventQueue::make_room() {
   if (near_.size() < kNearEntries || near_.size() < run_.size() || !ladder_.has_room()) {
     near_.grow();

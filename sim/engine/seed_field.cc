@@ -16,7 +16,7 @@
 namespace simbench::sim {
 namespace {
 
-// Of a word: beyond a double's digits.
+// The bits of a word that are beyond a double's digits.
 constexpr int kLowBits = 11;
 constexpr std::uint64_t kLowMask = (std::uint64_t{1} << kLowBits) - 1;
 constexpr double kUpperValues = 0x1p53;

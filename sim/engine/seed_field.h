@@ -11,13 +11,13 @@
 //
 // A field counts on the thread that has a SeedFieldScope of it. There, normal and exponential
 // numbers are made of one word each, by inversion instead of a ziggurat: so a word moved a little
-// moves the number a little, its tails included, and no later draw. So an empty field gives another
-// run than no field, of the same law. For the same reason the delays of a camera's frame have a
-// stream for each frame (sim/usb/host_stack.h), since a jump takes one word more.
+// moves the number a little, its tails included, and no later draw. An empty field thus gives
+// another run than no field, of the same law. For the same reason the delays of a camera's frame
+// have a stream for each frame (sim/usb/host_stack.h), since a jump takes one word more.
 //
 // A backend keeps a world for its seed (sim/rig/simulation.h): make one for each field.
 //
-// Of a word, the lowest eleven bits are not moved: they are beyond a double's digits.
+// The lowest eleven bits of a word are not moved: they are beyond a double's digits.
 //
 // Source: Cotter, Roberts, Stuart and White, "MCMC methods for functions", Statistical Science
 // 28(3), 2013. Cost: some nanoseconds a word and mutation since the last that renewed it, 0.1 us

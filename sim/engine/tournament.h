@@ -6,7 +6,7 @@
 // address does not depend on how the one before went. A heap has fewer levels, but each waits for
 // the one before and guesses where to end, which costs more than the comparison.
 //
-// A discrete-event simulation mostly takes one event and adds its successor. So what is taken
+// A discrete-event simulation mostly takes one event and adds its successor. What is taken
 // leaves its place open, and the next event comes there and plays both away at once. Only when the
 // earliest is asked for again before that, the empty place has to be played by itself.
 //

@@ -158,7 +158,7 @@ class VirtualContext : public boost::asio::execution_context, private EventHandl
   template <class Handler>
   friend class HandlerWait;
 
-  // Of a wait: two pointers are left for its handler.
+  // The memory of a wait: two pointers are left for its handler.
   struct WaitMemory {
     alignas(std::max_align_t) std::byte bytes[128];
   };

@@ -11,7 +11,7 @@ namespace {
 constexpr ComponentKey kDriftFile("host: drift file");
 constexpr std::chrono::hours kWindow(1);
 
-// Of the oscillator when the file was written.
+// The frequency of the oscillator when the file was written.
 double frequency_then(const OscillatorModel& oscillator, TrueTime now, Nanoseconds age) {
   const double warmth_now = oscillator.mean_frequency_by_temperature(now - kWindow, now);
   const double warmth_then =

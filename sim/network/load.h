@@ -32,8 +32,8 @@ namespace simbench::sim {
 
 // Added to every message of a session.
 struct SessionLoad {
-  double send_cost_ms = 0;
-  double latency_ms = 0;
+  double send_cost_ms = 0;  // more for each send
+  double latency_ms = 0;    // more on the way of each message
 };
 
 // The draws that differ from pipeline to pipeline.

@@ -35,9 +35,9 @@ using PathId = std::uint32_t;
 // What travels as one: a datagram, or messages of a stream that leave together.
 struct Segment {
   PathId path = 0;
-  MessageId first = 0;  // number of the first message
-  TrueTime left{};
-  TrueTime at_switch{};
+  MessageId first = 0;              // number of the first message
+  TrueTime left{};                  // when it left the sender's stack
+  TrueTime at_switch{};             // when its last bit is there
   std::int64_t switch_number = 0;   // where it is
   bool is_at_access_point = false;  // has passed the air once
   double bytes = 0;                 // of the messages, without headers

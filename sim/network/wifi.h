@@ -22,7 +22,7 @@
 //
 // Power save. A station sleeps idle_ms after its last transmission in either direction. What is for
 // a sleeping one is held by the access point until the next beacon with a DTIM or until the station
-// wakes up to send, which takes it wake_up_ms. So the way to a quiet station takes up to
+// wakes up to send, which takes it wake_up_ms. The way to a quiet station thus takes up to
 // beacon_interval_ms * dtim_period longer, uniformly, and the way back does not; a station that
 // polls more often than each idle_ms sees none of it.
 //
@@ -143,7 +143,7 @@ class WifiCell : private EventHandler {
   void release(PeerId station);
 
   Drawn drawn(const WifiHop& hop, RandomStream& draw) const;
-  // Of one transmission; whether it fails.
+  // Draws the attempts of one transmission; whether it fails.
   bool draw_attempts(const WifiHop& hop, RandomStream& draw, Nanoseconds& took) const;
 
   void ready(HopId id);

@@ -6,8 +6,8 @@
 //   ADJ_FREQUENCY    rate = freq / 65536 ppm; ERANGE beyond 62 499 999 ppb
 //   ADJ_SETOFFSET    a step, in microseconds or (ADJ_NANO) nanoseconds
 //   nothing          freq is the rate in use
-// Of several modes the first of these counts; others are EOPNOTSUPP, and so is all where the card
-// has no clock. The clock state is always 0.
+// The first of these counts where several modes are set; others are EOPNOTSUPP, and so is all where
+// the card has no clock. The clock state is always 0.
 //
 // Source: clock_adjtime(2); Linux' Documentation/driver-api/ptp.rst.
 //

@@ -35,7 +35,7 @@ class KernelClock {
   struct Answer {
     int state = TIME_OK;
     int error = 0;  // an errno
-    timex now{};
+    timex now{};    // what adjtimex() fills in
   };
 
   // The host must outlive this.

@@ -35,8 +35,8 @@ class CameraStamps {
   TrueTime start() const { return start_; }
   const std::vector<DeviceClock>& clocks() const { return clocks_; }
 
-  // Of the frames of a period, by their places, until the next call. Periods come in order; those
-  // that the world keeps may come again.
+  // The stamps of a period's frames, by their places, until the next call. Periods come in order;
+  // those that the world keeps may come again.
   std::span<const FrameStamps> of_period(std::size_t number, const CameraPeriod& period) {
     if (number < kept_.size()) return kept_[number];
     if (!world_.is_whole()) kept_.clear();

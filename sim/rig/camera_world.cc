@@ -13,7 +13,7 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kLateFrame("host: late delivery of a frame");
-// Of a period, where cameras are steered: what is made ahead is short against a frame.
+// The parts of a period where cameras are steered: what is made ahead is short against a frame.
 constexpr int kSteeredParts = 8;
 // Frames of steered cameras may come to lag behind the slots.
 constexpr std::int64_t kMoreSlots = 8;

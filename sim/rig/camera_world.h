@@ -6,30 +6,37 @@
 //   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
 //     -> transfer complete -> delivery to its host
 //
-// None of it depends on a clock, nor on when the capture starts (but for bursts of load on the
-// hosts, which come and go in true time: depends_on_start()). So it is made once for a scenario and
-// a seed and read by every capture (sim/rig/capture.h), whatever the pipeline: the cameras stamp
-// its frames with their clocks (sim/rig/camera_stamps.h) and the hosts with theirs.
+// Problem: all pipelines of a scenario and a seed are to meet the same frames, and a rig of 18
+// cameras makes thousands of them a second of true time.
 //
+// Naive attempt: every stage of every frame is an event of the engine, in every run.
+//
+// Why it fails: nearly all events of a run are then stages of frames. The queue sorts what is
+// sorted by nature, the frames of all hosts take turns in the cache, and every pipeline repeats
+// what no pipeline can change.
+//
+// Key idea: none of it depends on a clock, nor on when the capture starts (but for bursts of load
+// on the hosts, which come and go in true time: depends_on_start()). This half is therefore made
+// once for a scenario and a seed, without events, and read by every capture (sim/rig/capture.h):
+// the cameras stamp its frames with their clocks (sim/rig/camera_stamps.h), the hosts with theirs.
 // It is made period by period, a period being the time from one pulse of the main trigger to the
-// next. Periods are kept while all of them together take less than `kept_bytes`; then only the last
-// one is, and the half can be read only once.
+// next, and in a period host by host, since no host's frames meet another's and a host's cameras
+// fit into the cache: exposures by the pulse and by shutters that run free, transfers of its
+// controllers, delays of what was transferred. The deliveries of all hosts are sorted then. What is
+// under way when the period ends goes on in the next.
 //
-// All random numbers of a frame are drawn when its exposure begins, from streams of its own camera
-// and stream.
-//
-// In a period each host goes through all stages before the next one begins, since no host's frames
-// meet another's and a host's cameras fit into the cache: exposures by the pulse and by shutters
-// that run free, transfers of its controllers, delays of what was transferred. Then what was
-// delivered is sorted. What is under way when the period ends goes on in the next. In one
-// nanosecond, a transfer that ends makes room before a frame is offered, and frames are delivered
-// in the order in which their transfers ended, then host by host.
-//
-// Steered cameras (algorithms/ports/capture_alignment.h) depend on what the hosts do: their half is
-// of one capture alone, is read while it runs, and is made in small parts of a period, so that at
-// most one part is made ahead of the hosts. steer() hands a command to a camera. Frames of cameras
-// that no trigger reaches belong to the pulse of the reference camera's exposure that is nearest
-// (sim/rig/reference_pulses.h).
+// Contract:
+//  - Periods are kept while all of them together take less than `kept_bytes`; then only the last
+//    one is, and the half can be read only once.
+//  - All random numbers of a frame are drawn when its exposure begins, from streams of its own
+//    camera and stream.
+//  - In one nanosecond, a transfer that ends makes room before a frame is offered. Frames are
+//    delivered in the order in which their transfers ended, then host by host.
+//  - Steered cameras (algorithms/ports/capture_alignment.h) depend on what the hosts do: their half
+//    is of one capture alone, is read while it runs, and is made in small parts of a period: at
+//    most one part is made ahead of the hosts. steer() hands a command to a camera.
+//  - Frames of cameras that no trigger reaches belong to the pulse of the reference camera's
+//    exposure that is nearest (sim/rig/reference_pulses.h).
 //
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
 // docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
@@ -103,8 +110,8 @@ class CameraWorld {
  public:
   static constexpr std::size_t kKeptBytes = 64 << 20;
 
-  // Of a capture that starts at `start`. The scenario must outlive this. Of the limits, that of
-  // events counts.
+  // The half of a capture that starts at `start`. The scenario must outlive this. The limit of
+  // events alone counts.
   CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
               const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes,
               Steering steering = Steering::kNone);
@@ -131,7 +138,7 @@ class CameraWorld {
   TrueTime last_exposure() const { return last_exposure_; }
   // After the last period: when the last frame is delivered or lost, but not before the former.
   TrueTime end() const { return end_; }
-  // Of the periods until now: pulses, readouts, transfers, deliveries and polls.
+  // All pulses, readouts, transfers, deliveries and polls of the periods until now.
   std::uint64_t events() const { return events_; }
   std::uint64_t trace_hash() const { return trace_hash_; }
 

@@ -42,7 +42,7 @@ namespace simbench::sim {
 struct SimStream {
   std::uint32_t camera;
   std::uint32_t host;
-  std::uint32_t controller;
+  std::uint32_t controller;  // counted over all hosts
   std::uint32_t index_on_controller;
   StreamKind kind;
   double bytes;         // of a frame
@@ -50,7 +50,7 @@ struct SimStream {
   Nanoseconds latency;  // from the end of the exposure to the offer to the bus
   Nanoseconds readout;  // of a rolling shutter
   double late_ns;       // delivered later than a camera of the model is (may be negative)
-  TrueTime started;
+  TrueTime started;     // to stream
   Shutter shutter;
   std::unique_ptr<SteeredSensor> sensor;  // in place of the shutter, where no trigger reaches it
   FrameDelays delays;

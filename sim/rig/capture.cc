@@ -195,7 +195,7 @@ void Capture::flush() {
   flushed_ = records_.size();
 }
 
-// Of the LED clock, if the newest frame of the block shows it: after the frame.
+// Reports the LED clock after the newest frame of the block, if that shows it.
 void Capture::report_sighting(const SimFrame& frame) {
   const auto lit = led_clock_->read(frame, world_->cameras().stream(frame.stream).readout);
   if (!lit) return;

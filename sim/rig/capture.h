@@ -1,9 +1,19 @@
 // A capture: the cameras' half of a world, stamped by the clocks of its hosts' half.
 //
-// What happens to frames, polls and pulses in true time is known beforehand (CameraWorld), and what
-// the cameras stamp (CameraStamps). The hosts' clocks can be read at any past instant, so nothing
-// here needs an event of the engine: what happened until now is reported when somebody asks for it
-// by catch_up(), in the order in which it happened. Who must not come before it asks first:
+// Problem: a recording has every frame as its host's clock stamps it, between the adjustments,
+// exchanges and messages of that host, all in the order in which they happened.
+//
+// Naive attempt: each delivery of a frame, poll and pulse is an event, which reads the clocks.
+//
+// Why it fails: these events outnumber all others, and each finds the clock of another host, which
+// the cache has lost since its last frame. Yet hardly anybody looks at a frame when it comes.
+//
+// Key idea: what happens to frames, polls and pulses in true time is known beforehand
+// (CameraWorld), and what the cameras stamp (CameraStamps). The hosts' clocks can be read at any
+// past instant. Nothing here therefore needs an event: what happened until now is stamped and
+// reported, many frames at once, when somebody asks for it by catch_up().
+//
+// Contract: who must not come before what happened until now asks for it first:
 //
 //  - what else is recorded or observed: adjustments, exchanges, outcomes, messages;
 //  - capture traffic, in which frames leave through the same ports as messages: each message;

@@ -34,9 +34,9 @@ namespace simbench::sim {
 // A reading of a camera's clock, at `read` between its begin and its end.
 struct CameraPoll {
   std::uint32_t camera = 0;
-  TrueTime begin{};
-  TrueTime read{};
-  TrueTime end{};
+  TrueTime begin{};  // the host asks
+  TrueTime read{};   // the camera reads its clock
+  TrueTime end{};    // the host has the reading
 };
 
 class ClockPolls {

@@ -154,7 +154,7 @@ class WorldRun {
   }
 
  private:
-  // Of the walks and ramps that got as far as a clock goes.
+  // The notes of the walks and ramps that got as far as a clock goes.
   std::vector<std::string> notes() {
     const auto is_limited = [this](const OscillatorModel& oscillator) {
       return oscillator.reached_limit(engine_.now());
