@@ -49,9 +49,8 @@ class IdealDelivery final : public ForwardingSink {
   std::vector<FrameRecord> ideal_;  // scratch
 };
 
-// Whether an ideal delivery leaves the world as it is. Of what it takes away, the delays that a
-// user measured are used by the stages under test alone; polls and drawn errors are part of the
-// world.
+// Whether an ideal delivery leaves the world as it is. It takes away the delays that a user
+// measured, which the stages under test alone use; polls and drawn errors are part of the world.
 bool delivery_is_scoring_alone(const scenarios::Cameras& cameras) {
   return !cameras.clock_poll.is_on() && cameras.calibration == scenarios::CalibrationError{};
 }
@@ -128,7 +127,7 @@ struct WorldScores {
   BySeed physical_ms = BySeed(StageSet::kSets);
 };
 
-// Of pipelines that nobody steers, what the granularity is makes no difference.
+// The granularity makes no difference to pipelines that nobody steers.
 void repeat_without_granularity(WorldScores& scores) {
   constexpr std::size_t kHalf = StageSet::kSets / 2;
   for (WorldScores::BySeed* values :

@@ -15,13 +15,23 @@
 // What of the scenario each stage is, and what it is where the stage is ideal, says
 // scenarios/schema.json (scenarios/ideal.h).
 //
-// A stage's part is its Shapley value: the reduction of the error when the stage is replaced by its
-// oracle, averaged over all orders in which the stages can be replaced, and so over all 2^7 worlds
-// with some of them ideal, each simulated with the same seeds. The parts and the remainder (the
-// error that is left when all stages are ideal) add up to the error, exactly for each seed. A part
-// may be negative: two errors can cancel.
+// Problem: the error of a pipeline is to be divided among the stages, so that the user sees which
+// of them is worth a better cable, clock or algorithm.
 //
-// Three errors are divided:
+// Naive attempt: replace one stage by its oracle; what the error falls by is that stage's part.
+//
+// Why it fails: these parts do not add up to the error. Where two stages spoil the same stamp,
+// replacing one of them may gain nothing; where two errors cancel, it makes the error larger; and
+// what a stage gains depends on which others were replaced before it.
+//
+// Key idea: a stage's part is its Shapley value, the reduction of the error when the stage is
+// replaced by its oracle, averaged over all orders in which the stages can be replaced, and
+// therefore over all 2^7 worlds with some of them ideal, each simulated with the same seeds. The
+// parts and the remainder (the error that is left when all stages are ideal) add up to the error,
+// exactly for each seed. A part may be negative: two errors can cancel. What a stage gains alone is
+// stated beside it (ErrorParts::alone).
+//
+// Contract: three errors are divided.
 //  - amd_ms: over the sets that gathering emits, so that gathering counts; if it emits none in one
 //    of the worlds, over the true pulses, where gathering has no part (amd_of_sets tells which);
 //  - absolute_error_ms: likewise;
@@ -32,15 +42,15 @@
 // others are ideal. Lost frames stay lost. A host synchronisation that looks at frames gets their
 // real arrivals: its use of them is part of the host clock.
 //
-// Of a pipeline with a capture_alignment there are eight stages: "phase" in place of the trigger,
-// which is ideal where all cameras expose at once as far as their granularity lets them (the oracle
+// A pipeline with a capture_alignment has eight stages: "phase" in place of the trigger, which is
+// ideal where all cameras expose at once as far as their granularity lets them (the oracle
 // of capture_alignment), and "granularity", which is ideal where frames have lengths of any
 // nanosecond. What the host clock does to the exposures is in its part of physical_ms.
 //
 // Cost: 128 scores of the pipeline per seed (256 of a steered one), over 32 captures in 16 worlds:
 // gathering and delivery only change what is scored, the host clock only the pipeline. 64 captures
 // in 32 worlds where the scenario has polls, or draws errors of its calibrations, which an ideal
-// delivery takes away. Of several pipelines the cameras' half of a world is made once for all
+// delivery takes away. The cameras' half of a world is made once for all pipelines
 // (docs/design.md section 2), and so is the capture of an ideal host clock. Memory: on each thread
 // a scorer for every pipeline in four or two sets of stages at a time. Source: Shapley, "A value
 // for n-person games", 1953; docs/design.md section 6. Each oracle is a definition.

@@ -39,7 +39,7 @@ Pipeline with_cheap_stages(Pipeline pipeline) {
   return pipeline;
 }
 
-// Of one pipeline.
+// The errors of one pipeline.
 struct ErrorsByWorld {
   std::vector<std::vector<double>> by_world;  // then by seed, ms
   std::string first_note;                     // of any world

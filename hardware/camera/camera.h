@@ -70,13 +70,13 @@ struct CameraSettings {
 
 struct CameraFrame {
   StreamKind stream = StreamKind::kDepth;
-  StampDomain domain = StampDomain::kHardwareClock;
-  std::uint32_t counter = 0;
+  StampDomain domain = StampDomain::kHardwareClock;  // of `sensor` and `frame`
+  std::uint32_t counter = 0;                         // the camera's; a gap is a lost frame
   std::uint32_t exposure_us = 0;
-  DeviceStamp sensor;
-  DeviceStamp frame;
+  DeviceStamp sensor;                    // middle of the exposure
+  DeviceStamp frame;                     // start of readout and transmission
   std::optional<MonotonicTime> backend;  // where the source has one
-  MonotonicTime arrived{};
+  MonotonicTime arrived{};               // at this program
 };
 
 // An event of a camera during a capture, other than a frame.

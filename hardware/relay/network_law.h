@@ -41,6 +41,16 @@ struct LawCounts {
   std::uint64_t reordered = 0;
   std::uint64_t stream_messages = 0;
   std::uint64_t retransmissions = 0;
+
+  LawCounts& operator+=(const LawCounts& other) {
+    datagrams += other.datagrams;
+    lost += other.lost;
+    duplicated += other.duplicated;
+    reordered += other.reordered;
+    stream_messages += other.stream_messages;
+    retransmissions += other.retransmissions;
+    return *this;
+  }
 };
 
 // One direction of a link.

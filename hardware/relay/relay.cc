@@ -140,15 +140,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
       all.law = wires_->counts();
       all.dropped_full += wires_->dropped();
     }
-    for (const auto& gate : gates_) {
-      const LawCounts& law = gate->law.counts();
-      all.law.datagrams += law.datagrams;
-      all.law.lost += law.lost;
-      all.law.duplicated += law.duplicated;
-      all.law.reordered += law.reordered;
-      all.law.stream_messages += law.stream_messages;
-      all.law.retransmissions += law.retransmissions;
-    }
+    for (const auto& gate : gates_) all.law += gate->law.counts();
     all.late_p50 = queue_.lateness(0.5);
     all.late_p95 = queue_.lateness(0.95);
     return all;

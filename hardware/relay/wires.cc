@@ -139,12 +139,7 @@ class Wires::State : public std::enable_shared_from_this<Wires::State> {
 
   LawCounts counts() const {
     LawCounts all;
-    for (const NetworkLaw& law : laws_) {
-      all.datagrams += law.counts().datagrams;
-      all.lost += law.counts().lost;
-      all.duplicated += law.counts().duplicated;
-      all.reordered += law.counts().reordered;
-    }
+    for (const NetworkLaw& law : laws_) all += law.counts();
     return all;
   }
   std::uint64_t dropped() const { return dropped_; }

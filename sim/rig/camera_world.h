@@ -74,12 +74,12 @@ struct SimFrame {
   std::uint32_t stream = 0;  // of SimCameras::stream()
   std::uint32_t camera = 0;
   std::uint32_t host = 0;
-  std::uint32_t counter = 0;
+  std::uint32_t counter = 0;  // of its stream; a gap is a lost frame
   std::uint32_t exposure_us = 0;
   FrameFate fate = FrameFate::kDelivered;
   StreamKind kind{};
-  double stamp_noise_ns = 0;  // of the camera's own stamps
-  std::int64_t pulse = kNoPulse;
+  double stamp_noise_ns = 0;      // of the camera's own stamps
+  std::int64_t pulse = kNoPulse;  // the slot that it belongs to
   TrueTime exposure_start{};
   TrueTime exposure_end{};
   TrueTime readout_start{};

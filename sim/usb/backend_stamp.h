@@ -7,7 +7,7 @@
 //   stamp = cut(m + cut(system) - cut(monotonic))
 //
 // On Windows m, in ms since the host was switched on, goes through a 32-bit float, whose 24 bits
-// are steps of 0.4 ms after an hour and of 8 ms after a day. So intervals of back-end stamps
+// are steps of 0.4 ms after an hour and of 8 ms after a day. Intervals of back-end stamps thus
 // fluctuate far more than those of arrivals, as in Fig. 2 of Yoon et al. 2021, whose hosts have
 // Windows 10. Elsewhere, and on Windows since 2025, m is the monotonic clock itself.
 //
@@ -42,7 +42,7 @@ class BackendStamps {
   BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
                 Nanoseconds arrival_quantum);
 
-  // Of a host with this clock, switched on host_uptime_h before its steady clock read
+  // A stamp of a host with this clock, switched on host_uptime_h before its steady clock read
   // `capture_start`. `copied`: when the transfer has ended and the frame is copied, without delays;
   // `delivered`: both clocks at that instant.
   HostTime stamp(const SystemClock& clock, SteadyTime capture_start, TrueTime copied,
