@@ -14,8 +14,8 @@
 
 namespace simbench::app {
 
-// Of input that is refused, files that cannot be read, results that cannot be written; nothing for
-// any other exception.
+// The text for input that is refused, files that cannot be read and results that cannot be written;
+// nothing for any other exception.
 std::optional<std::string> bad_input(const std::exception& error);
 
 }  // namespace simbench::app

@@ -3,8 +3,8 @@
 // For each request the cameras' capture of its seed is simulated and written as a recording, and a
 // rig of processes plays it (hardware/experiment), with clocks that start wrong by amounts drawn
 // for the seed. The conductor runs a session of the request's pipeline on that rig, and the capture
-// goes to the sink with its truth. So every pipeline of a seed meets the same exposures and clocks,
-// and this machine's real sockets, schedulers and timers.
+// goes to the sink with its truth. Every pipeline of a seed thus meets the same exposures and
+// clocks, and this machine's real sockets, schedulers and timers.
 //
 // The truth is known as exactly as in a simulation. All processes share the machine's monotonic
 // clock, which is the true time here. The exposures are those of the played capture, whose zero is

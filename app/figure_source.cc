@@ -17,8 +17,8 @@
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
+#include "recording/collected.h"
 #include "recording/version.h"
-#include "reports/clocks/clock_answer.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/result_figures.h"
@@ -189,9 +189,8 @@ class FigureMaker {
     FigureSource source = source_of_repeated_run();
     source.first_seed = seeds.first_seed;
     source.seeds = seeds.seeds;
-    std::vector<scenarios::Pipeline> pipelines;
-    pipelines.reserve(choices.size());
-    for (const PipelineChoice& choice : choices) pipelines.push_back(choice.pipeline);
+    const std::vector<scenarios::Pipeline> pipelines =
+        collected(choices, &PipelineChoice::pipeline);
     for (const evaluation::PipelineBudget& budget :
          evaluation::pipeline_budgets(scenario, pipelines, make_world_, seeds, progress_)) {
       add({reports::budget_figure(budget)}, source);
@@ -243,8 +242,6 @@ Scenario scenario_of(const Archive& archive) {
 Archive archive_without_runs(const Scenario& scenario, const std::string& path) {
   Archive archive;
   archive.path = path;
-  archive.version = version();
-  archive.commit = commit();
   archive.results.scenario = scenario.name;
   archive.results.derivation = scenario.derivation;
   return archive;

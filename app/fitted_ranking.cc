@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "evaluation/run/evaluate.h"
 #include "scenarios/loader.h"
 

@@ -1,7 +1,7 @@
 // What every algorithm would give on a rig: the model that was fitted to a recording, under all
 // pipelines of the leaderboard that it can run.
 //
-// Of a rig with one host the boards of host synchronisation are left out: there is nothing to
+// The boards of host synchronisation are left out for a rig with one host: there is nothing to
 // synchronise. An algorithm that needs what the model lacks (hardware stamps, pulses, polls of the
 // cameras' clocks) is left out and named.
 //

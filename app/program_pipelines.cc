@@ -2,20 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/node_programs.h"
 #include "processes/placeholders.h"
+#include "recording/number_in.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 #include "sim/programs/find_program.h"
@@ -79,16 +77,13 @@ std::optional<std::chrono::milliseconds> patience() {
   constexpr int kLongest = 86'400;
   const char* const text = std::getenv(kPatienceVariable);
   if (text == nullptr) return std::nullopt;
-  const std::string_view digits = text;
-  int seconds = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
-  if (error != std::errc() || end != digits.data() + digits.size() || seconds < 1 ||
-      seconds > kLongest) {
+  const std::optional<int> seconds = number_in<int>(text);
+  if (!seconds || *seconds < 1 || *seconds > kLongest) {
     throw scenarios::InputError(
         fmt::format("{}: found '{}', allowed: a whole number of seconds from 1 to {}",
                     kPatienceVariable, scenarios::shown_text(text), kLongest));
   }
-  return std::chrono::seconds(seconds);
+  return std::chrono::seconds(*seconds);
 }
 
 evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,

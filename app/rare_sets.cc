@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <vector>
 
 #include "app/interrupt.h"
 #include "evaluation/run/pipeline_choice.h"

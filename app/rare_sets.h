@@ -13,7 +13,7 @@
 //    cameras of a wrong set err by half a period against each other; that no pulse of such a run
 //    has a spread of half of that is taken for granted.
 //
-// So a probability is that of a set of a rig drawn at random, over rigs and time together: a
+// A probability is thus that of a set of a rig drawn at random, over rigs and time together: a
 // certain rig is better or worse. Evaluated pulses lie in the capture of the scenario; what happens
 // once a day, and the drift of days, is not in it.
 //

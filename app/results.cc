@@ -13,8 +13,6 @@
 #include "reports/figures/gnuplot.h"
 #include "reports/page/sweep_page.h"
 #include "reports/results/csv.h"
-#include "reports/sweep/sweep_answer.h"
-#include "reports/sweep/sweep_ranking.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"

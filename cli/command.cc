@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "cli/command_line.h"
 #include "cli/process.h"
+#include "recording/number_in.h"
 
 namespace simbench::cli {
 namespace {
@@ -24,10 +24,8 @@ constexpr const char* kWordsCheck = "one of";
 template <class Number>
 CLI::Validator within(const char* kind, Number low, Number high) {
   const auto check = [kind, low, high](const std::string& text) -> std::string {
-    Number value = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error == std::errc() && stop == end && low <= value && value <= high) return "";
+    const std::optional<Number> value = number_in<Number>(text);
+    if (value && low <= *value && *value <= high) return "";
     return fmt::format("found '{}', allowed: {} from {} to {}", text, kind, low, high);
   };
   return {check, "", kNumberCheck};

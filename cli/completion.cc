@@ -1,28 +1,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/command_table.h"
+#include "cli/completion_scripts.h"
 #include "hardware/shell_quoted.h"
+#include "reports/text/escaped_text.h"
 
 namespace simbench::cli {
 namespace {
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos;
-       at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
-
-// A script with the name of the default command in place of DEFAULT.
-std::string named_default_command(const char* script) {
-  return replaced(script, "DEFAULT", kDefaultCommand);
-}
+using boost::replace_all_copy;
 
 // What each shell offers for a kind of value. In bash's and zsh's "{}" stands for the words; fish
 // gets words by an option of their own.
@@ -52,127 +44,8 @@ std::string words_of(const OptionEntry& entry) {
   return fmt::format("{}", fmt::join(entry.words, " "));
 }
 
-constexpr const char* kBashHead =
-    R"bash(# bash completion for simbench; made by `simbench completion bash`.
-
-)bash";
-
-// Uses three functions that are made from the table: the options of a command, the values of an
-// option of a command, the values of an argument. "-" is no value, as for a flag.
-constexpr const char* kBashBody = R"bash(
-# Those of the folders that hold results, or hold a folder that does; all if none does.
-_simbench_archives() {
-  local folder
-  local -a all=() found=()
-  while IFS= read -r folder; do
-    all+=("$folder")
-    if [[ -e $folder/results.json ]] || compgen -G "$folder/*/results.json" > /dev/null; then
-      found+=("$folder")
-    fi
-  done
-  (( ${#found[@]} )) || found=("${all[@]}")
-  (( ${#found[@]} == 0 )) || printf '%s\n' "${found[@]}"
-}
-
-# The candidates of a kind of value for the word being typed: KIND WORD PROGRAM SCENARIO.
-_simbench_complete() {
-  local word=$2 before=
-  case $1 in
-    word\ *) mapfile -t COMPREPLY < <(compgen -W "${1#word }" -- "$word") ;;
-    folder) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-    file) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-    command) mapfile -t COMPREPLY < <(compgen -W "$_simbench_commands" -- "$word") ;;
-    figure)
-      mapfile -t COMPREPLY < <(
-        compgen -W "$("$3" list figures --format names 2> /dev/null)" -- "$word")
-      ;;
-    archive)
-      compopt -o filenames
-      mapfile -t COMPREPLY < <(
-        compgen -d -- "$word" | _simbench_archives
-        compgen -f -X '!*.json' -- "$word"
-      )
-      ;;
-    pipelines)
-      [[ -n $4 ]] || return
-      [[ $word != *,* ]] || before=${word%,*},
-      mapfile -t COMPREPLY < <(
-        compgen -P "$before" -W \
-          "$("$3" list pipelines --scenario "$4" --format names 2> /dev/null)" -- "${word##*,}")
-      ;;
-    pointer)
-      [[ -n $4 ]] || return
-      compopt -o nospace
-      mapfile -t COMPREPLY < <(
-        compgen -S = -W "$("$3" describe "$4" --format names 2> /dev/null)" -- "$word")
-      ;;
-    start)
-      mapfile -t COMPREPLY < <(compgen -W "$_simbench_commands" -- "$word")
-      [[ -z $word || ${#COMPREPLY[@]} -gt 0 ]] || _simbench_complete scenario "$word" "$3"
-      ;;
-    scenario)
-      compopt -o filenames
-      mapfile -t COMPREPLY < <(
-        compgen -W "$("$3" list scenarios --format names 2> /dev/null)" -- "$word"
-        compgen -f -- "$word"
-      )
-      ;;
-  esac
-}
-
-_simbench() {
-  local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} at=1 command option='' place=0 kind
-  local scenario=
-  local -a words=()
-  COMPREPLY=()
-  # bash breaks words at "=": --format=json is three of them.
-  while (( at < COMP_CWORD )); do
-    [[ ${COMP_WORDS[at]} == = ]] || words+=("${COMP_WORDS[at]}")
-    (( at += 1 ))
-  done
-  [[ $word != = ]] || word=
-  if (( ${#words[@]} == 0 )); then
-    kind=start
-    [[ $word != -* ]] || kind="word $(_simbench_options '') $(_simbench_options DEFAULT)"
-    _simbench_complete "$kind" "$word" "$program"
-    return
-  fi
-  command=${words[0]}
-  if [[ $command == -* ]]; then
-    command=DEFAULT
-  else
-    words=("${words[@]:1}")
-    if [[ " $_simbench_commands " != *" $command "* ]]; then
-      scenario=$command command=DEFAULT
-    fi
-  fi
-  for at in "${words[@]}"; do
-    if [[ -n $option ]]; then
-      [[ $option != --scenario ]] || scenario=$at
-      option=
-    elif [[ $at == -* ]]; then
-      option=$at
-      [[ $(_simbench_value "$command" "$option") != - ]] || option=
-    else
-      [[ $command != describe || $place != 0 ]] || scenario=$at
-      (( place += 1 ))
-    fi
-  done
-  if [[ -n $option ]]; then
-    kind=$(_simbench_value "$command" "$option")
-  elif [[ $word == -* ]]; then
-    kind="word $(_simbench_options "$command")"
-  else
-    kind=$(_simbench_argument "$command" "$place")
-  fi
-  _simbench_complete "$kind" "$word" "$program" "$scenario"
-}
-
-complete -F _simbench simbench
-)bash";
-
 std::string kind_text(const OptionEntry& entry) {
-  return replaced(offer(entry.value).bash, "{}", words_of(entry));
+  return replace_all_copy(std::string(offer(entry.value).bash), "{}", words_of(entry));
 }
 
 std::string options_case(const CommandEntry& command) {
@@ -208,7 +81,7 @@ std::string argument_cases(const CommandEntry& command) {
 
 std::string function(const char* name, const char* subject, const std::string& cases,
                      const char* otherwise) {
-  return fmt::format("{}() {{\n  case {} in\n{}    *) echo '{}' ;;\n  esac\n}}\n\n", name, subject,
+  return fmt::format("{}() {{\n  case {} in\n{}    *) echo '{}' ;;\n  esac\n}}\n", name, subject,
                      cases, otherwise);
 }
 
@@ -225,115 +98,29 @@ std::string bash_completion(const CommandTable& table) {
     values += value_cases(command);
     arguments += argument_cases(command);
   }
-  return fmt::format("{}_simbench_commands='{}'\n\n{}{}{}{}", kBashHead, fmt::join(names, " "),
-                     function("_simbench_options", "$1", options, ""),
-                     function("_simbench_value", "\"$1 $2\"", values, "-"),
-                     function("_simbench_argument", "\"$1 $2\"", arguments, "-"),
-                     named_default_command(kBashBody).substr(1));
+  const std::vector<std::string> cases = {
+      function("_simbench_options", "$1", options, ""),
+      function("_simbench_value", "\"$1 $2\"", values, "-"),
+      function("_simbench_argument", "\"$1 $2\"", arguments, "-")};
+  return reports::filled(completion::bash_script(),
+                         {{"commands", fmt::format("{}", fmt::join(names, " "))},
+                          {"cases", fmt::format("{}", fmt::join(cases, "\n"))},
+                          {"default_command", kDefaultCommand}});
 }
 
 namespace {
 
-constexpr const char* kZshHead = R"zsh(#compdef simbench
-# zsh completion for simbench; made by `simbench completion zsh`.
-
-_simbench_scenarios() {
-  local -a names
-  names=(${(f)"$(_call_program scenarios ${(q)_simbench_program} list scenarios --format names 2> /dev/null)"})
-  _alternative 'scenarios:scenario:compadd -a names' 'files:scenario file:_files'
-}
-
-_simbench_command_names() {
-  _describe -t commands command _simbench_commands
-}
-
-_simbench_figures() {
-  local -a names
-  names=(${(f)"$(_call_program figures ${(q)_simbench_program} list figures --format names 2> /dev/null)"})
-  compadd -a names
-}
-
-# Folders with results.json, or with a folder that has one.
-_simbench_archives() {
-  _alternative 'archives:archive:_files -/' 'files:results.json:_files -g "*.json"'
-}
-
-# The line's scenario: after --scenario, or what `describe` describes.
-_simbench_scenario() {
-  local -i at=${words[(I)--scenario]}
-  local word
-  REPLY=
-  [[ ${words[1]} != describe ]] || REPLY=${words[2]}
-  (( ! at )) || REPLY=${words[at+1]}
-  for word in $words; do
-    [[ $word != --scenario=* ]] || REPLY=${word#--scenario=}
-  done
-  [[ -n $REPLY ]]
-}
-
-_simbench_pipelines() {
-  local REPLY
-  _simbench_scenario || return 1
-  local -a names
-  names=(${(f)"$(_call_program pipelines ${(q)_simbench_program} list pipelines --scenario ${(q)REPLY} --format names 2> /dev/null)"})
-  compset -P '*,'
-  compadd -S '' -a names
-}
-
-_simbench_pointers() {
-  local REPLY
-  _simbench_scenario || return 1
-  local -a names
-  names=(${(f)"$(_call_program parameters ${(q)_simbench_program} describe ${(q)REPLY} --format names 2> /dev/null)"})
-  compadd -S = -a names
-}
-
-)zsh";
-
-constexpr const char* kZshTail = R"zsh(
-# Options without a command are those of the default command.
-_simbench() {
-  local _simbench_program=$words[1] curcontext=$curcontext
-  if (( CURRENT == 2 )); then
-    if [[ $PREFIX == -* ]]; then
-      _arguments -S $_simbench_program_options $_simbench_DEFAULT
-    else
-      _describe -t commands command _simbench_commands || _simbench_scenarios
-    fi
-    return
-  fi
-  if [[ $words[2] == -* ]]; then
-    words=($words[1] DEFAULT "${(@)words[2,-1]}")
-    (( CURRENT += 1 ))
-  elif [[ -z ${(M)_simbench_commands:#${words[2]}:*} ]]; then
-    words=($words[1] DEFAULT --scenario "${(@)words[2,-1]}")
-    (( CURRENT += 2 ))
-  fi
-  local specs=_simbench_${words[2]//-/_}
-  (( ${(P)+specs} )) || return 1
-  shift words
-  (( CURRENT -= 1 ))
-  _arguments -S "${(@P)specs}"
-}
-
-if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
-  _simbench "$@"
-else
-  compdef _simbench simbench
-fi
-)zsh";
-
 // Escapes text within the brackets of an option's explanation, and between colons.
 std::string escaped(std::string text) {
-  text = replaced(std::move(text), "\\", "\\\\");
+  text = replace_all_copy(std::move(text), "\\", "\\\\");
   for (const char* special : {"[", "]", ":"}) {
-    text = replaced(std::move(text), special, std::string("\\") + special);
+    text = replace_all_copy(std::move(text), special, std::string("\\") + special);
   }
   return text;
 }
 
 std::string action(const OptionEntry& entry) {
-  return replaced(offer(entry.value).zsh, "{}", words_of(entry));
+  return replace_all_copy(std::string(offer(entry.value).zsh), "{}", words_of(entry));
 }
 
 std::string option_specs(const OptionEntry& option) {
@@ -353,7 +140,7 @@ std::string option_specs(const OptionEntry& option) {
 }
 
 std::string specs(const std::string& name, const CommandEntry& command) {
-  std::string text = fmt::format("_simbench_{}=(\n", replaced(name, "-", "_"));
+  std::string text = fmt::format("_simbench_{}=(\n", replace_all_copy(name, "-", "_"));
   for (const OptionEntry& option : command.options) text += option_specs(option);
   for (const OptionEntry& argument : command.arguments) {
     text += fmt::format("  {}\n", hardware::shell_quoted(
@@ -366,95 +153,21 @@ std::string specs(const std::string& name, const CommandEntry& command) {
 }  // namespace
 
 std::string zsh_completion(const CommandTable& table) {
-  std::string text = fmt::format("{}_simbench_commands=(\n", kZshHead);
+  std::string tables = "_simbench_commands=(\n";
   for (const CommandEntry& command : table.commands) {
-    text += fmt::format("  {}\n", hardware::shell_quoted(
-                                      fmt::format("{}:{}", command.name, escaped(command.text))));
+    tables += fmt::format("  {}\n", hardware::shell_quoted(
+                                        fmt::format("{}:{}", command.name, escaped(command.text))));
   }
-  text += ")\n" + specs("program_options", table.program);
-  for (const CommandEntry& command : table.commands) text += specs(command.name, command);
-  return text + named_default_command(kZshTail);
+  tables += ")\n" + specs("program_options", table.program);
+  for (const CommandEntry& command : table.commands) tables += specs(command.name, command);
+  return reports::filled(completion::zsh_script(),
+                         {{"tables", tables}, {"default_command", kDefaultCommand}});
 }
 
 namespace {
 
-constexpr const char* kFishHead =
-    R"(# fish completion for simbench; made by `simbench completion fish`.
-
-# The command of the line so far; empty while there is none.
-function __simbench_command
-    set -l words (commandline -opc)
-    set -e words[1]
-    if not set -q words[1]
-        return
-    end
-    if contains -- $words[1] (__simbench_commands)
-        echo $words[1]
-    else
-        echo DEFAULT
-    end
-end
-
-function __simbench_is
-    test (count (__simbench_command)) -gt 0; and test (__simbench_command) = $argv[1]
-end
-
-# The options of the default command stand for it.
-function __simbench_starts
-    test (count (__simbench_command)) -eq 0
-end
-
-function __simbench_scenarios
-    set -l words (commandline -opc)
-    eval (string escape -- $words[1]) list scenarios --format names 2>/dev/null
-    __fish_complete_path (commandline -ct)
-end
-
-function __simbench_names
-    set -l words (commandline -opc)
-    eval (string escape -- $words[1]) list $argv --format names 2>/dev/null
-end
-
-# Folders, and files of results.
-function __simbench_archives
-    __fish_complete_directories (commandline -ct)
-    __fish_complete_suffix .json
-end
-
-# The line's scenario: after --scenario, a word in place of the command, or what describe describes.
-function __simbench_scenario
-    set -l words (commandline -opc)
-    set -e words[1]
-    if set -l at (contains -i -- --scenario $words)
-        echo $words[(math $at + 1)]
-    else if test "$words[1]" = describe
-        echo $words[2]
-    else if not contains -- $words[1] (__simbench_commands)
-        echo $words[1]
-    end
-end
-
-function __simbench_pipelines
-    set -l scenario (__simbench_scenario)
-    test -n "$scenario"; or return
-    set -l before (commandline -ct | string replace -r '[^,]*$' '')
-    for name in (__simbench_names pipelines --scenario (string escape -- $scenario))
-        echo $before$name
-    end
-end
-
-function __simbench_pointers
-    set -l words (commandline -opc)
-    set -l scenario (__simbench_scenario)
-    test -n "$scenario"; or return
-    eval (string escape -- $words[1] describe $scenario) --format names 2>/dev/null | string replace -r '$' =
-end
-
-complete -c simbench -f
-)";
-
 std::string quoted_for_fish(std::string text) {
-  return fmt::format("'{}'", replaced(replaced(std::move(text), "\\", "\\\\"), "'", "\\'"));
+  return fmt::format("'{}'", replace_all_copy(replace_all_copy(text, "\\", "\\\\"), "'", "\\'"));
 }
 
 // The options of `complete` that offer the values.
@@ -491,7 +204,9 @@ std::string fish_commands(const CommandTable& table) {
 }  // namespace
 
 std::string fish_completion(const CommandTable& table) {
-  std::string text = named_default_command(kFishHead) + fish_commands(table);
+  std::string text =
+      reports::filled(completion::fish_script(), {{"default_command", kDefaultCommand}}) +
+      fish_commands(table);
   text +=
       "complete -c simbench -n '__simbench_starts; and test -n (commandline -ct)' "
       "-a '(__simbench_scenarios)' -d SCENARIO\n";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command_table.h"
+#include "recording/collected.h"
 #include "recording/version.h"
 
 namespace simbench::cli {
@@ -199,8 +200,7 @@ std::string command_list(const CommandTable& table) {
 std::string manual_page(const CommandTable& table) {
   const CommandEntry& program = table.program;
   const Footer footer = divided(program);
-  std::vector<std::string> pages;
-  for (const CommandEntry& command : table.commands) pages.push_back(page_name(command));
+  const std::vector<std::string> pages = collected(table.commands, page_name);
   return top(program) +
          fmt::format("{}{}\n{}\n[{}]\n", heading("SYNOPSIS"), bold("simbench"), italic("COMMAND"),
                      italic("OPTION...")) +

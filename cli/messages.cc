@@ -7,12 +7,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
+#include "recording/number_in.h"
 #include "recording/text_fields.h"
 #include "reports/text/output_file.h"
 #include "reports/text/program_name.h"
@@ -92,11 +93,8 @@ std::string event_line(const Json& event) {
 }
 
 std::optional<std::size_t> width_of_output() {
-  const std::string_view columns = variable("COLUMNS");
-  std::size_t width = 0;
-  const char* end = columns.data() + columns.size();
-  const auto [stop, error] = std::from_chars(columns.data(), end, width);
-  if (error == std::errc() && stop == end && width >= kNarrowest) return width;
+  const auto columns = number_in<std::size_t>(variable("COLUMNS"));
+  if (columns && *columns >= kNarrowest) return columns;
   if (const auto own = terminal_width(STDOUT_FILENO)) return own;
   return is_pipe(STDOUT_FILENO) ? terminal_width(STDERR_FILENO) : std::nullopt;
 }

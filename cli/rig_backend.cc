@@ -1,6 +1,5 @@
 #include "cli/rig_backend.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <iostream>

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "recording/line_reader.h"
+#include "recording/number_in.h"
 #include "recording/text_fields.h"
 
 namespace simbench {
@@ -176,12 +177,8 @@ Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column,
 }
 
 std::uint64_t counter_of(std::string_view cell, const std::string& column, const CsvPlace& place) {
-  std::uint64_t counter = 0;
-  const auto [stop, error] = std::from_chars(cell.data(), cell.data() + cell.size(), counter);
-  if (error != std::errc() || stop != cell.data() + cell.size()) {
-    place.fail(column + ": found " + quoted_bytes(cell) + ", allowed: a whole number");
-  }
-  return counter;
+  if (const auto counter = number_in<std::uint64_t>(cell)) return *counter;
+  place.fail(column + ": found " + quoted_bytes(cell) + ", allowed: a whole number");
 }
 
 }  // namespace

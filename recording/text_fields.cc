@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "recording/number_in.h"
+
 namespace simbench {
 
 std::string quoted_bytes(std::string_view bytes) {
@@ -94,13 +96,11 @@ void append_escaped(std::string& line, std::string_view text) {
 
 double FieldReader::finite(const char* name) {
   const std::string_view field = next(name);
-  const char* end = field.data() + field.size();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(field.data(), end, value);
+  const std::optional<double> value = number_in<double>(field);
   std::string canonical;
-  if (error == std::errc() && stop == end && std::isfinite(value)) append_number(canonical, value);
+  if (value && std::isfinite(*value)) append_number(canonical, *value);
   if (canonical != field || field.empty()) fail(name, "a number in its shortest form");
-  return value;
+  return *value;
 }
 
 std::string FieldReader::text(const char* name) {
@@ -156,12 +156,9 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Numbers with an exponent, which nobody writes for stamps that need every digit.
 std::optional<Nanoseconds> parse_scientific(std::string_view text, std::int64_t largest_ms) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool in_range = std::abs(value) <= static_cast<double>(largest_ms);
-  if (error != std::errc() || stop != end || !in_range) return std::nullopt;
-  return from_ms(value);
+  const std::optional<double> value = number_in<double>(text);
+  if (!value || !(std::abs(*value) <= static_cast<double>(largest_ms))) return std::nullopt;
+  return from_ms(*value);
 }
 
 }  // namespace

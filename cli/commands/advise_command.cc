@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,8 +11,8 @@
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/advice/advice.h"
+#include "recording/number_in.h"
 #include "reports/advice/advice_report.h"
-#include "reports/advice/rare_report.h"
 #include "reports/text/json_node.h"
 #include "scenarios/document.h"
 
@@ -37,7 +36,7 @@ Exit status: 0 ok (also if no rig meets it), 1 internal error, 2 bad usage or in
 
 constexpr std::int64_t kMostHosts = 24;
 
-// Of both events together: some five minutes on two cores for 24 cameras at 60 Hz.
+// The runs of both events together take some five minutes on two cores for 24 cameras at 60 Hz.
 constexpr std::uint64_t kSpreadRuns = 6000;
 constexpr std::uint64_t kWrongSetRuns = 5600;
 constexpr std::size_t kRareStarts = 512;
@@ -57,21 +56,18 @@ struct AdviseOptions {
   std::string pipeline;
 };
 
-std::optional<std::int64_t> whole_number(std::string_view text) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_whole = error == std::errc() && end == text.data() + text.size();
-  if (!is_whole || number < 1 || number > kMostHosts) return std::nullopt;
-  return number;
+std::optional<std::int64_t> host_count(std::string_view text) {
+  const auto number = number_in<std::int64_t>(text);
+  return number && *number >= 1 && *number <= kMostHosts ? number : std::nullopt;
 }
 
 // "2..8" or "4"; nothing given: all that makes sense.
 void set_hosts(const std::string& text, evaluation::RigRequest& rig) {
   if (text.empty()) return;
   const std::size_t dots = text.find("..");
-  const auto low = whole_number(std::string_view{text}.substr(0, dots));
+  const auto low = host_count(std::string_view{text}.substr(0, dots));
   const auto high =
-      dots == std::string::npos ? low : whole_number(std::string_view{text}.substr(dots + 2));
+      dots == std::string::npos ? low : host_count(std::string_view{text}.substr(dots + 2));
   if (!low || !high || *low > *high) {
     throw scenarios::InputError(
         fmt::format("--hosts: found '{}', allowed: a number or a range FEWEST..MOST from 1 to {}, "

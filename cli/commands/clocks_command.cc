@@ -1,6 +1,5 @@
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "app/interrupt.h"
 #include "app/results.h"

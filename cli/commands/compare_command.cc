@@ -61,14 +61,10 @@ reports::Comparison compared(const CompareOptions& options) {
 int compare(CompareOptions options) {
   options.comparison.smallest_effect = options.smallest_effect_percent / 100;
   const reports::Comparison comparison = compared(options);
-  if (options.format == "json") {
-    print_result(reports::comparison_json(comparison));
-  } else if (options.format == "csv") {
-    print_result(reports::comparison_csv(comparison));
-  } else {
-    const reports::Document document = reports::comparison_document(comparison);
-    print_result(reports::drawn_as(options.format, document));
-  }
+  print_result(options.format == "json" ? reports::comparison_json(comparison)
+               : options.format == "csv"
+                   ? reports::comparison_csv(comparison)
+                   : reports::drawn_as(options.format, reports::comparison_document(comparison)));
   return kOk;
 }
 

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <variant>
 
 #include "algorithms/device_time/variants.h"
@@ -14,6 +13,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/parameter_text.h"
+#include "recording/collected.h"
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/document.h"
@@ -233,9 +233,7 @@ int describe(const DescribeOptions& options) {
   if (is_scenario) return describe_scenario(options);
   const std::vector<Described> described = algorithms_called(options.what);
   if (!described.empty()) return describe_algorithms(options, described);
-  std::vector<std::string> known;
-  known.reserve(builtin.size());
-  for (const scenarios::BuiltinScenario& each : builtin) known.push_back(each.name);
+  std::vector<std::string> known = collected(builtin, &scenarios::BuiltinScenario::name);
   for (const StageInfo& stage : kPipelineStages) {
     for (const AlgorithmInfo* const info : algorithms_of(stage.id)) known.push_back(info->name);
   }

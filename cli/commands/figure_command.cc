@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "app/figure_source.h"
 #include "app/recorded_streams.h"
@@ -16,6 +14,7 @@
 #include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
+#include "recording/collected.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
@@ -149,8 +148,7 @@ std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command
                             command.scenario, overrides_of(command.sets), command.pipelines));
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
-  std::vector<std::string> known;
-  for (const scenarios::Pipeline& pipeline : scenario.pipelines) known.push_back(pipeline.name);
+  const std::vector<std::string> known = collected(scenario.pipelines, &scenarios::Pipeline::name);
   const app::FigureOptions options = options_of(command, entry, known);
   announce_budget(entry, options, command.seed.value_or(1));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
@@ -161,8 +159,8 @@ std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command
 std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
                                                    const FigureEntry& entry) {
   reports::Archive archive = reports::read_archive(command.archive);
-  std::vector<std::string> known;
-  for (const evaluation::Row& row : archive.results.rows) known.push_back(row.pipeline);
+  const std::vector<std::string> known =
+      collected(archive.results.rows, &evaluation::Row::pipeline);
   const app::FigureOptions options = options_of(command, entry, known);
   announce_budget(entry, options, command.seed.value_or(archive.results.first_seed));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {

@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "app/answer.h"
 #include "app/fitted_ranking.h"

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/parameter_text.h"
+#include "recording/collected.h"
 #include "reports/figures/figure.h"
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
@@ -62,36 +64,28 @@ std::string scenarios_text() {
 // The same for scripts: one name a line.
 std::string bare_names(const ListOptions& options) {
   std::vector<std::string> names;
-  if (options.what.empty() || options.what == "scenarios") {
-    for (const auto& scenario : scenarios::builtin_scenarios()) names.push_back(scenario.name);
+  const auto add = [&names](const auto& list, const auto& name) {
+    for (const auto& each : list) names.push_back(std::invoke(name, each));
+  };
+  const std::string& what = options.what;
+  if (what.empty() || what == "scenarios") {
+    add(scenarios::builtin_scenarios(), &scenarios::BuiltinScenario::name);
   }
-  if (options.what.empty() || options.what == "algorithms") {
+  if (what.empty() || what == "algorithms") {
     for (const StageInfo& stage : kPipelineStages) {
-      for (const AlgorithmInfo* const info : algorithms_of(stage.id)) names.push_back(info->name);
+      add(algorithms_of(stage.id), &AlgorithmInfo::name);
     }
   }
-  if (options.what == "pipelines") {
-    for (const auto& pipeline : scenarios::load_scenario(options.scenario).pipelines) {
-      names.push_back(pipeline.name);
-    }
+  if (what == "pipelines") {
+    add(scenarios::load_scenario(options.scenario).pipelines, &scenarios::Pipeline::name);
   }
-  if (options.what == "cameras") {
-    for (const auto& camera : scenarios::camera_profiles()) names.push_back(camera.model);
+  if (what == "cameras") add(scenarios::camera_profiles(), &scenarios::CameraProfile::model);
+  if (what == "oscillators") {
+    add(scenarios::oscillator_classes(), &scenarios::OscillatorClass::class_name);
   }
-  if (options.what == "oscillators") {
-    for (const auto& each : scenarios::oscillator_classes()) names.push_back(each.class_name);
-  }
-  if (options.what == "parts") {
-    for (const scenarios::Part& part : scenarios::parts()) names.push_back(part.part);
-  }
-  if (options.what == "studies") {
-    for (const scenarios::Study& study : scenarios::studies()) names.push_back(study.name);
-  }
-  if (options.what == "figures") {
-    for (const reports::FigureEntry& figure : reports::figure_catalogue()) {
-      names.push_back(figure.id);
-    }
-  }
+  if (what == "parts") add(scenarios::parts(), &scenarios::Part::part);
+  if (what == "studies") add(scenarios::studies(), &scenarios::Study::name);
+  if (what == "figures") add(reports::figure_catalogue(), &reports::FigureEntry::id);
   return fmt::format("{}\n", fmt::join(names, "\n"));
 }
 
@@ -133,7 +127,7 @@ std::string stages_text(std::string (*text_of)(const StageInfo&)) {
 std::string pipelines_text(const std::string& scenario) {
   const std::vector<scenarios::Pipeline> pipelines = scenarios::load_scenario(scenario).pipelines;
   std::vector<Field<scenarios::Pipeline>> fields = {
-      {{"pipeline", Align::kLeft}, [](const auto& pipeline) { return pipeline.name; }}};
+      {{"pipeline", Align::kLeft}, &scenarios::Pipeline::name}};
   for (const StageInfo& stage : present_stages(pipelines)) {
     fields.push_back({{stage.name, Align::kLeft}, [id = stage.id](const auto& pipeline) {
                         const std::string& name = at_stage(pipeline, id);
@@ -245,8 +239,7 @@ std::string part_list_text() {
   for (const scenarios::Part& part : scenarios::parts()) {
     text += fmt::format("{}{} ({}): {}\n", text.empty() ? "" : "\n", part.part, to_text(part.kind),
                         part.name);
-    std::vector<std::string> prices;
-    for (const scenarios::PartPrice& price : part.prices) prices.push_back(price_text(price));
+    std::vector<std::string> prices = collected(part.prices, price_text);
     if (prices.empty()) prices = {"nothing"};
     add(fmt::format("price: {} [{}]", fmt::join(prices, " and "), part.price_source));
     if (part.cameras > 0) add(fmt::format("cameras = {}", part.cameras));

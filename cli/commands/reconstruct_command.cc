@@ -19,7 +19,6 @@
 #include "reconstruction/experiment.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/reconstruction/reconstruction_folder.h"
-#include "reports/reconstruction/reconstruction_json.h"
 
 namespace simbench::cli {
 namespace {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "app/figure_source.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
+#include "recording/collected.h"
 #include "reports/archive/archive.h"
 #include "reports/page/html_report.h"
 #include "reports/text/output_file.h"
@@ -56,8 +56,7 @@ void check_pipelines(const app::ReportDetail& detail,
                      const std::vector<reports::Archive>& archives) {
   for (const std::string& pipeline : detail.pipelines) {
     for (const reports::Archive& archive : archives) {
-      std::vector<std::string> names;
-      for (const evaluation::Row& row : archive.results.rows) names.push_back(row.pipeline);
+      std::vector<std::string> names = collected(archive.results.rows, &evaluation::Row::pipeline);
       if (std::find(names.begin(), names.end(), pipeline) != names.end()) continue;
       throw scenarios::InputError(fmt::format("--pipelines: found '{}', allowed for {}: {}",
                                               pipeline, archive.path, fmt::join(names, ", ")));
@@ -82,8 +81,7 @@ std::string output_beside(const std::vector<std::string>& archives) {
 int make_report(ReportOptions options) {
   check_named_once(options.archives);
   if (options.output.empty()) options.output = output_beside(options.archives);
-  std::vector<reports::Archive> archives;
-  for (const std::string& path : options.archives) archives.push_back(reports::read_archive(path));
+  std::vector<reports::Archive> archives = collected(options.archives, reports::read_archive);
   check_pipelines(options.detail, archives);
   reports::OutputFile file(options.output);
 

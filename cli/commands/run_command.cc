@@ -110,12 +110,9 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
   });
   if (!budgets) return kInterrupted;
   report.budgets = std::move(*budgets);
-  if (options.format == "json") {
-    print_result(reports::budget_json(report));
-  } else {
-    const reports::Document document = reports::budget_document(report);
-    print_result(reports::drawn_as(options.format, document));
-  }
+  print_result(options.format == "json"
+                   ? reports::budget_json(report)
+                   : reports::drawn_as(options.format, reports::budget_document(report)));
   return kOk;
 }
 

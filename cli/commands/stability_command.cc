@@ -52,14 +52,10 @@ int run_stability(const StabilityOptions& options) {
   for (const evaluation::LogStability& file : found) {
     for (const std::string& note : file.notes) print_note(note);
   }
-  if (options.format == "json") {
-    print_result(reports::stability_json(found));
-  } else if (options.format == "csv") {
-    print_result(reports::stability_csv(found));
-  } else {
-    const reports::Document document = reports::stability_document(found);
-    print_result(options.format == "markdown" ? markdown(document) : plain(document));
-  }
+  print_result(options.format == "json" ? reports::stability_json(found)
+               : options.format == "csv"
+                   ? reports::stability_csv(found)
+                   : reports::drawn_as(options.format, reports::stability_document(found)));
   return kOk;
 }
 

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/interrupt.h"
@@ -17,6 +16,7 @@
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/task_farm.h"
+#include "recording/collected.h"
 #include "recording/counted.h"
 #include "reports/sweep/sweep_folder.h"
 #include "reports/sweep/sweep_report.h"
@@ -93,8 +93,7 @@ const Study* study_of(SweepOptions& options) {
   }
   const Study* study = scenarios::find_study(options.study);
   if (study == nullptr) {
-    std::vector<std::string> known;
-    for (const Study& each : scenarios::studies()) known.push_back(each.name);
+    const std::vector<std::string> known = collected(scenarios::studies(), &Study::name);
     throw scenarios::InputError(fmt::format("--study: found '{}', allowed: list, {}", options.study,
                                             fmt::join(known, ", ")));
   }

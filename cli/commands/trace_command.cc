@@ -14,6 +14,7 @@
 #include "cli/program_options.h"
 #include "cli/progress.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "recording/collected.h"
 #include "reports/text/output_file.h"
 #include "reports/timeline/trace.h"
 #include "reports/timeline/trace_recorder.h"
@@ -64,8 +65,8 @@ reports::TraceOptions trace_options(const TraceCommandOptions& options) {
 
 evaluation::PipelineChoice choose(const scenarios::Scenario& scenario, std::string name) {
   if (name.empty()) {
-    std::vector<std::string> names;
-    for (const scenarios::Pipeline& pipeline : scenario.pipelines) names.push_back(pipeline.name);
+    const std::vector<std::string> names =
+        collected(scenario.pipelines, &scenarios::Pipeline::name);
     name = usual_pipeline(names);
   }
   return evaluation::choose_pipelines(scenario, {name}).front();

@@ -177,6 +177,12 @@ void check_request(const AdviceRequest& request) {
   }
 }
 
+// The device times to choose from, the most usual first.
+std::vector<std::string> advice_device_times() {
+  return {"librealsense_global", "regression_30", "hull_switch_10s_calibrated",
+          "two_way_poll_calibrated"};
+}
+
 }  // namespace
 
 std::vector<Pipeline> candidate_pipelines(const RigOption& option, const AdviceRequest& request) {
@@ -192,11 +198,6 @@ std::vector<Pipeline> candidate_pipelines(const RigOption& option, const AdviceR
     }
   }
   return pipelines;
-}
-
-std::vector<std::string> advice_device_times() {
-  return {"librealsense_global", "regression_30", "hull_switch_10s_calibrated",
-          "two_way_poll_calibrated"};
 }
 
 std::vector<std::string> advice_gatherings(const std::vector<Requirement>& requirements) {

@@ -63,7 +63,7 @@ struct PipelineAdvice {
   std::int64_t met = 0;  // seeds that meet all requirements
   std::int64_t seeds = 0;
   double margin = kNan;
-  // Of each requirement's metric over the seeds: median and the quantile at its bad end.
+  // Each requirement's metric over the seeds: its median and the quantile at its bad end.
   std::vector<double> median{};
   std::vector<double> bad_quantile{};
   std::int64_t frames_dropped = 0;
@@ -100,9 +100,7 @@ struct Advice {
 std::vector<scenarios::Pipeline> candidate_pipelines(const RigOption& option,
                                                      const AdviceRequest& request);
 
-// The device times to choose from, the most usual first.
-std::vector<std::string> advice_device_times();
-// Likewise; one unless a requirement is about sets.
+// The gatherings to choose from; one unless a requirement is about sets.
 std::vector<std::string> advice_gatherings(const std::vector<Requirement>& requirements);
 
 // Throws scenarios::InputError for what no world supports, and what evaluate() throws. `progress`

@@ -8,6 +8,7 @@
 #include <map>
 #include <string_view>
 
+#include "recording/collected.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -28,6 +29,19 @@ std::string without_unit(std::string_view id) {
 [[noreturn]] void refuse(const std::string& found, const std::string& allowed) {
   throw scenarios::InputError(
       fmt::format("--require: found '{}', allowed {}", scenarios::shown_text(found), allowed));
+}
+
+// The names that a requirement may have, without unit.
+std::vector<std::string> requirement_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, id] : kOtherNames) names.emplace_back(name);
+  for (const Metric& metric : metrics()) {
+    const std::string name = without_unit(metric.id);
+    const auto is_other = [&name](const auto& pair) { return pair.second == name; };
+    if (metric.is_series() && std::ranges::none_of(kOtherNames, is_other)) names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
 }
 
 const Metric& metric_named(const std::string& name) {
@@ -112,18 +126,6 @@ double Requirement::margin_of(double value) const {
   return metric->is_share() ? (1 - limit) / (1 - size) : size / limit;
 }
 
-std::vector<std::string> requirement_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, id] : kOtherNames) names.emplace_back(name);
-  for (const Metric& metric : metrics()) {
-    const std::string name = without_unit(metric.id);
-    const auto is_other = [&name](const auto& pair) { return pair.second == name; };
-    if (metric.is_series() && std::ranges::none_of(kOtherNames, is_other)) names.push_back(name);
-  }
-  std::ranges::sort(names);
-  return names;
-}
-
 Requirement parse_requirement(const std::string& text) {
   const std::string whole = trimmed(text);
   const std::size_t sign = whole.find_first_of("<>");
@@ -153,9 +155,7 @@ Requirement parse_requirement(const std::string& text) {
 }
 
 std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts) {
-  std::vector<Requirement> requirements;
-  requirements.reserve(texts.size());
-  for (const std::string& text : texts) requirements.push_back(parse_requirement(text));
+  std::vector<Requirement> requirements = collected(texts, parse_requirement);
   if (requirements.empty()) refuse("", "at least one, as in 'amd<0.1ms'");
   return requirements;
 }

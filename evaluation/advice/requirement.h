@@ -45,9 +45,6 @@ Requirement parse_requirement(const std::string& text);
 // The same of several, separated by commas or given in turn; at least one.
 std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts);
 
-// The names that a requirement may have, without unit.
-std::vector<std::string> requirement_names();
-
 }  // namespace simbench::evaluation
 
 #endif  // SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_

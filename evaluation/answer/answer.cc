@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "algorithms/device_time/variants.h"
 #include "algorithms/ports/host_sync.h"

@@ -11,7 +11,6 @@
 
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/run/jobs.h"
-#include "evaluation/run/named_job.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/rows.h"
 #include "scenarios/loader.h"
@@ -88,9 +87,9 @@ class ClockEvaluation {
     try {
       finished = run_jobs_with_workers(
           jobs_.size(), {.threads = options_.jobs, .cancel = options_.cancel}, [this]() -> Job {
-            return [this, worker = std::make_shared<Worker>(*this)](std::size_t job) {
-              run_job(job, *worker->source);
-            };
+            return [this,
+                    worker = std::make_shared<TimedWorker<ClockSource>>(cpu_time_, make_source_)](
+                       std::size_t job) { run_job(job, *worker->source); };
           });
     } catch (const RecordingCancelled&) {
       finished = false;
@@ -113,14 +112,6 @@ class ClockEvaluation {
     SeedScore seed;
     StabilityCurves curves;
     std::optional<ClockReadings> readings;  // of the first seed
-  };
-
-  // One thread's backend; its CPU time ends when that is gone.
-  struct Worker {
-    explicit Worker(ClockEvaluation& all) : timer(all.cpu_time_), source(all.make_source_()) {}
-
-    CpuTimer timer;
-    std::unique_ptr<ClockSource> source;
   };
 
   void run_job(std::size_t job, ClockSource& source) {

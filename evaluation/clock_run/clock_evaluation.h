@@ -36,8 +36,11 @@ namespace simbench::evaluation {
 inline constexpr std::uint64_t kLongestClockRunS = 31'000'000;
 
 struct ClockOptions {
+  // The time from the cold start to the loss of the master.
   std::uint64_t duration_s = 36'000;
+  // The time since the cold start from which spread, errors and stability count.
   std::uint64_t from_s = 300;
+  // The others are those of EvaluationOptions.
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 8;
   unsigned jobs = 0;

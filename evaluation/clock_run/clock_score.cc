@@ -43,6 +43,13 @@ std::vector<StabilityPoint> rms(std::span<const StabilityCurves> clocks,
       [](double sum, double count) { return std::sqrt(sum / count); });
 }
 
+std::vector<StabilityPoint> largest(std::span<const StabilityCurves> clocks,
+                                    std::vector<StabilityPoint> StabilityCurves::*curve) {
+  return pool(
+      clocks, curve, [](double most, double value) { return std::max(most, value); },
+      [](double most, double) { return most; });
+}
+
 // Every slave's clock over the readings.
 StabilityCurves curves_of(const ClockReadings& readings) {
   std::vector<StabilityCurves> slaves;
@@ -51,11 +58,7 @@ StabilityCurves curves_of(const ClockReadings& readings) {
         .interval_s = readings.interval_s,
         .pieces = {{.start_s = readings.start_s, .x_s = readings.errors_s[host]}}};
     Stability found = stability_of(series);
-    slaves.push_back({.adev = std::move(found.adev),
-                      .mdev = std::move(found.mdev),
-                      .hdev = std::move(found.hdev),
-                      .tdev_ms = std::move(found.tdev_ms),
-                      .mtie_ms = std::move(found.mtie_ms)});
+    slaves.push_back(static_cast<StabilityCurves&&>(found));
   }
   return pooled(slaves);
 }
@@ -77,14 +80,12 @@ double largest_ms(std::span<const double> errors_s) {
 }  // namespace
 
 StabilityCurves pooled(std::span<const StabilityCurves> curves) {
-  return {.adev = rms(curves, &StabilityCurves::adev),
-          .mdev = rms(curves, &StabilityCurves::mdev),
-          .hdev = rms(curves, &StabilityCurves::hdev),
-          .tdev_ms = rms(curves, &StabilityCurves::tdev_ms),
-          .mtie_ms = pool(
-              curves, &StabilityCurves::mtie_ms,
-              [](double largest, double value) { return std::max(largest, value); },
-              [](double largest, double) { return largest; })};
+  StabilityCurves all;
+  for (const ClockCurve& curve : clock_curves()) {
+    const bool is_largest = curve.points == &StabilityCurves::mtie_ms;
+    all.*curve.points = is_largest ? largest(curves, curve.points) : rms(curves, curve.points);
+  }
+  return all;
 }
 
 ClockScorer::ClockScorer(const ClockSpan& span) : span_(span), errors_(span.hosts) {

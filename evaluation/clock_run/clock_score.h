@@ -48,15 +48,6 @@ struct ClockSpan {
   std::size_t hosts = 0;
 };
 
-// The curves of a run, of a pipeline over all its runs.
-struct StabilityCurves {
-  std::vector<StabilityPoint> adev{};
-  std::vector<StabilityPoint> mdev{};
-  std::vector<StabilityPoint> hdev{};
-  std::vector<StabilityPoint> tdev_ms{};
-  std::vector<StabilityPoint> mtie_ms{};
-};
-
 // The curves of several clocks as one: deviations are the RMS over those that have the tau, MTIE
 // the largest. Terms add up.
 StabilityCurves pooled(std::span<const StabilityCurves> curves);

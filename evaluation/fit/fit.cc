@@ -202,7 +202,6 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
                     "ppm; are both stamps milliseconds of one camera?",
                     camera, stream.kind, fit.skew_ppm));
   }
-  fit.least_squares_ppm = skew_of_slope_ppm(statistics.drift_ppm * 1e-6);
   fit.excess_ms = excess_of(points, fit.span_s);
   fit.rise_ms = rise_ms(points, line);
   std::vector<bool> follows(frames.size(), false);

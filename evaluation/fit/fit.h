@@ -73,9 +73,9 @@ std::vector<double> one_way_table(const std::vector<double>& round_trips);
 
 // The fit of one stream: the camera's rate, and the lateness of each frame.
 //
-// Arrivals are late, never early. So the highest line below all of them maps the camera's clock to
-// the host's, except for a constant: it is the edge of the lower convex hull over the middle of the
-// device stamps.
+// Arrivals are late, never early. Therefore the highest line below all of them maps the camera's
+// clock to the host's, except for a constant: it is the edge of the lower convex hull over the
+// middle of the device stamps.
 //
 // A frame's excess is its delivery delay less the smallest one, which stamps cannot show: its
 // height above that edge, block by block. Blocks last kBlockS at least, and have kBlockFrames at
@@ -102,7 +102,6 @@ struct StreamFit {
   double span_s = 0;
   double skew_ppm = 0;  // device rate / host rate - 1, lower hull
   double skew_error_ppm = 0;
-  double least_squares_ppm = 0;  // the same by least squares, which the mean delay's drift moves
   // The least height above the line in the worst tenth of the recording: large if the rate changed.
   double rise_ms = 0;
   std::vector<double> excess_ms;  // frame by frame, 0 at least

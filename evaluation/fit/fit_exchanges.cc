@@ -3,11 +3,10 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "evaluation/fit/fit.h"
-#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/collected.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -87,9 +86,7 @@ std::optional<FittedValue> initial_offset_ms(const std::vector<RoundTrip>& trips
 std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
   constexpr double kLargestErrorPpm = 5;
   constexpr std::size_t kFewest = 10;
-  std::vector<double> durations;
-  durations.reserve(trips.size());
-  for (const RoundTrip& trip : trips) durations.push_back(trip.trip_ns);
+  const std::vector<double> durations = collected(trips, &RoundTrip::trip_ns);
   const double limit_ns = quantile(durations, 0.25);
   std::vector<double> at;
   std::vector<double> offset;

@@ -13,6 +13,7 @@
 
 #include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/collected.h"
 #include "recording/counted.h"
 #include "scenarios/loader.h"
 
@@ -72,6 +73,32 @@ std::string drop_line(const RigFit& fit) {
       fit.missing, fit.frames + fit.missing, fit.drop_interval.low, fit.drop_interval.high);
 }
 
+// The root mean square of the existing values.
+std::optional<double> root_mean_square(const NetworkFit& network,
+                                       std::optional<FittedValue> HostClockFit::*member) {
+  double sum = 0;
+  double count = 0;
+  for (const HostClockFit& host : network.hosts) {
+    if (!(host.*member)) continue;
+    sum += (host.*member)->value * (host.*member)->value;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return std::sqrt(sum / count);
+}
+
+// The standard deviation of the rates of the hosts' oscillators, from the rates relative to the
+// master's, which is one of them; nothing if no host has one.
+std::optional<double> host_skew_sigma_ppm(const NetworkFit& network) {
+  const auto relative = root_mean_square(network, &HostClockFit::skew_ppm);
+  if (!relative) return std::nullopt;
+  return *relative / std::numbers::sqrt2;
+}
+
+std::optional<double> initial_offset_sigma_ms(const NetworkFit& network) {
+  return root_mean_square(network, &HostClockFit::initial_offset_ms);
+}
+
 void add_network_lines(const NetworkFit& network, Lines& lines) {
   if (!network.latency_quantiles_ms.empty()) {
     lines.push_back(fmt::format(
@@ -116,20 +143,6 @@ void add_rise_lines(const RigFit& fit, const FitInput& input, Lines& lines) {
         "{:.4f} ms of the line; the model's oscillators wander as the base has it",
         input.cameras[stream.camera].name, stream.rise_ms));
   }
-}
-
-// The root mean square of the existing values.
-std::optional<double> root_mean_square(const NetworkFit& network,
-                                       std::optional<FittedValue> HostClockFit::*member) {
-  double sum = 0;
-  double count = 0;
-  for (const HostClockFit& host : network.hosts) {
-    if (!(host.*member)) continue;
-    sum += (host.*member)->value * (host.*member)->value;
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return std::sqrt(sum / count);
 }
 
 using Json = nlohmann::ordered_json;
@@ -196,8 +209,7 @@ std::string stated_base(const FitBase& base, const std::string& path) {
 
 // The host of each camera.
 Json places_of(const FitInput& input) {
-  std::vector<std::uint32_t> hosts;
-  for (const FitCamera& camera : input.cameras) hosts.push_back(camera.host);
+  std::vector<std::uint32_t> hosts = collected(input.cameras, &FitCamera::host);
   const std::size_t cameras = hosts.size();
   const std::size_t per_host = (cameras + input.hosts.size() - 1) / input.hosts.size();
   bool is_even = true;
@@ -213,8 +225,7 @@ Json places_of(const FitInput& input) {
 
 Json cameras_json(const RigFit& fit, const FitInput& input, const FitBase& base, Tables& tables) {
   Json cameras = places_of(input);
-  std::vector<double> skews;
-  for (const FittedValue& skew : fit.skew_ppm) skews.push_back(skew.value);
+  const std::vector<double> skews = collected(fit.skew_ppm, &FittedValue::value);
   cameras["skew_of_camera_ppm"] = tables.mark(skews, 4);
   cameras["drop_probability"] = rounded(fit.drop_share(), 1e-9);
   cameras["sensor_stamp_jitter_sigma_us"] = 0;
@@ -266,28 +277,7 @@ Json members(const RigFit& fit, const FitInput& input, const FitBase& base, Tabl
   return result;
 }
 
-std::string summary_of(const FitModel& model, const RigFit& fit, const FitBase& base) {
-  const std::string summary = fmt::format(
-      "A fit of {} to a recording. {}. Not identified: {}. Contained in the tables, and therefore "
-      "switched off: jitter common to a host, load bursts, noise and steps of the stamps{}.",
-      base.scenario.name, fmt::join(model.evidence, "; "), fmt::join(model.not_identified, "; "),
-      fit.network.latency_quantiles_ms.empty() ? "" : ", what messages cost the hosts");
-  return summary.substr(0, kLongestSummary);
-}
-
-}  // namespace
-
-std::optional<double> host_skew_sigma_ppm(const NetworkFit& network) {
-  const auto relative = root_mean_square(network, &HostClockFit::skew_ppm);
-  if (!relative) return std::nullopt;
-  return *relative / std::numbers::sqrt2;
-}
-
-std::optional<double> initial_offset_sigma_ms(const NetworkFit& network) {
-  return root_mean_square(network, &HostClockFit::initial_offset_ms);
-}
-
-std::vector<std::string> fit_evidence(const RigFit& fit, const FitInput& input) {
+Lines fit_evidence(const RigFit& fit, const FitInput& input) {
   Lines lines = {skew_line(fit, input), delivery_line(fit), correlation_line(fit), drop_line(fit)};
   add_network_lines(fit.network, lines);
   add_rise_lines(fit, input, lines);
@@ -327,6 +317,17 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
   }
   return lines;
 }
+
+std::string summary_of(const FitModel& model, const RigFit& fit, const FitBase& base) {
+  const std::string summary = fmt::format(
+      "A fit of {} to a recording. {}. Not identified: {}. Contained in the tables, and therefore "
+      "switched off: jitter common to a host, load bursts, noise and steps of the stamps{}.",
+      base.scenario.name, fmt::join(model.evidence, "; "), fmt::join(model.not_identified, "; "),
+      fit.network.latency_quantiles_ms.empty() ? "" : ", what messages cost the hosts");
+  return summary.substr(0, kLongestSummary);
+}
+
+}  // namespace
 
 FitBase default_base(const FitInput& input) {
   const char* const name = input.hosts.size() > 1 ? "6cam_2host_30fps" : "3cam_1host_30fps";

@@ -6,8 +6,7 @@
 // the cost of messages on the hosts at both ends. Faults of the base are omitted: their effects are
 // in the recording.
 //
-// "summary" has the evidence for each value; fit_evidence() returns it line by line,
-// not_identified() what no fit to these stamps can give.
+// "summary" has the evidence for each value.
 //
 //   const FitModel model = fit_model(fit, input, base, "model.json");
 //   reports::write_file("model.json", model.text);
@@ -41,7 +40,9 @@ FitBase default_base(const FitInput& input);
 struct FitModel {
   scenarios::Scenario scenario;
   std::string text;  // of the file
+  // A line "/json/pointer: value and evidence" for each fitted value.
   std::vector<std::string> evidence;
+  // A line for each value that comes from the base.
   std::vector<std::string> not_identified;
 };
 
@@ -49,18 +50,6 @@ struct FitModel {
 // relative to it.
 FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base,
                    const std::string& path);
-
-// Returns lines "/json/pointer: value and evidence".
-std::vector<std::string> fit_evidence(const RigFit& fit, const FitInput& input);
-
-// Returns a line for each value that comes from `base`.
-std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input,
-                                        const scenarios::Scenario& base);
-
-// Return the standard deviation of the rates of the hosts' oscillators, from the rates relative to
-// the master's, which is one of them, and that of the initial offsets; nothing if no host has one.
-std::optional<double> host_skew_sigma_ppm(const NetworkFit& network);
-std::optional<double> initial_offset_sigma_ms(const NetworkFit& network);
 
 }  // namespace simbench::evaluation
 

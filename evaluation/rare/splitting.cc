@@ -277,7 +277,7 @@ class Splitting {
     return product * shares / static_cast<double>(particles.size());
   }
 
-  // Of the 95 % interval of their mean.
+  // Half of the width of the 95 % interval of their mean.
   static double half_width(const std::vector<double>& values) {
     const auto n = static_cast<double>(values.size());
     return student_t_exceeded(0.025, n - 1) * standard_deviation(values) / std::sqrt(n);

@@ -9,6 +9,7 @@
 
 #include "algorithms/ports/stage.h"
 #include "algorithms/registry.h"
+#include "recording/collected.h"
 #include "scenarios/document.h"
 
 namespace simbench::evaluation {
@@ -65,9 +66,7 @@ std::vector<Override> with_ad_hoc_pipelines(const std::string& scenario,
   const auto stated = [allowed](const std::string& name) { return is_ad_hoc(name, allowed); };
   if (std::ranges::none_of(names, stated)) return overrides;
   const std::vector<Pipeline> pipelines = scenarios::load_scenario(scenario, overrides).pipelines;
-  std::vector<std::string> known;
-  known.reserve(pipelines.size() + names.size());
-  for (const Pipeline& pipeline : pipelines) known.push_back(pipeline.name);
+  std::vector<std::string> known = collected(pipelines, &Pipeline::name);
   for (const std::string& name : names) {
     if (!stated(name) || std::ranges::find(known, name) != known.end()) continue;
     known.push_back(name);

@@ -1,11 +1,11 @@
 // One capture for several pipelines: which of them can share it, and their scores side by side.
 //
 // A capture follows from the scenario, the seed, the host synchronisation with its parameters,
-// what steers the exposures with its own, and
-// the load that is drawn for the pipeline (scenarios::Scenario::draws_load(), keyed by its name).
-// So pipelines share one if they differ in device_time and gathering alone, and either the scenario
-// draws no load, or their host synchronisation never meets it (HostSync::is_idle()), or they have
-// the same name. Pipelines of programs share none: what a program does is not simbench's to say.
+// what steers the exposures with its own, and the load that is drawn for the pipeline
+// (scenarios::Scenario::draws_load(), keyed by its name). Pipelines share one if they differ in
+// device_time and gathering alone, and either the scenario draws no load, or their host
+// synchronisation never meets it (HostSync::is_idle()), or they have the same name. Pipelines of
+// programs share none: what a program does is not simbench's to say.
 //
 // Scenarios that differ in members of scoring alone (is_scoring_alone()) have the same captures, so
 // their pipelines share too, each scored as its own scenario says (PipelineChoice::scored_in).

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <exception>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "evaluation/run/capture_groups.h"
 #include "evaluation/run/jobs.h"
-#include "evaluation/run/named_job.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/rows.h"
@@ -59,7 +57,8 @@ class EvaluationRun {
       const bool finished = run_jobs_with_workers(
           groups_.size() * options_.seeds, {.threads = options_.jobs, .cancel = options_.cancel},
           [this]() -> Job {
-            return [this, worker = std::make_shared<Worker>(*this)](std::size_t job) {
+            return [this, worker = std::make_shared<TimedWorker<RecordingSource>>(
+                              cpu_time_, make_source_)](std::size_t job) {
               run_job(job, *worker->source);
             };
           });
@@ -75,14 +74,6 @@ class EvaluationRun {
   }
 
  private:
-  // One thread's backend; its CPU time ends when that is gone.
-  struct Worker {
-    explicit Worker(EvaluationRun& all) : timer(all.cpu_time_), source(all.make_source_()) {}
-
-    CpuTimer timer;
-    std::unique_ptr<RecordingSource> source;
-  };
-
   // A capture and the scores of its pipelines. Jobs of one seed are neighbours, so that the
   // remaining time follows from the elapsed time.
   void run_job(std::size_t job, RecordingSource& source) {

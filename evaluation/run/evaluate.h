@@ -32,13 +32,20 @@
 namespace simbench::evaluation {
 
 struct EvaluationOptions {
+  // The seed of the first run; the others count up from it.
   std::uint64_t first_seed = 1;
+  // How many runs each pipeline has.
   std::uint64_t seeds = 32;
-  unsigned jobs = 0;                     // threads; 0: as many as there are cores
-  std::vector<std::string> pipelines{};  // by name, in this order; empty: all of the scenario
-  bool keep_pulses = false;              // keep SeedScore::pulses (for frames.csv)
-  bool share_captures = false;           // of pipelines that the source records alike
-  // Polled before each job; once true, no further job begins. A signal handler may set it.
+  // The number of threads; 0: as many as there are cores.
+  unsigned jobs = 0;
+  // The pipelines to run, by name and in this order; empty: all of the scenario.
+  std::vector<std::string> pipelines{};
+  // Whether rows keep SeedScore::pulses, which frames.csv needs.
+  bool keep_pulses = false;
+  // Whether pipelines that the source records alike share a capture.
+  bool share_captures = false;
+  // A flag that is polled before each job; once true, no further job begins. A signal handler may
+  // set it.
   const std::atomic<bool>* cancel = nullptr;
 };
 

@@ -1,5 +1,6 @@
 #include "evaluation/run/jobs.h"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
@@ -7,6 +8,10 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "recording/recording.h"
+#include "recording/version.h"
+#include "scenarios/loader.h"
 
 namespace simbench::evaluation {
 
@@ -19,6 +24,23 @@ double thread_cpu_seconds() {
 }
 
 }  // namespace
+
+void run_named(const JobName& name, const std::function<void()>& action) {
+  const auto text = [&name] {
+    return fmt::format("{}, pipeline {}, seed {}", name.scenario, name.pipeline, name.seed);
+  };
+  try {
+    action();
+  } catch (const RecordingCancelled&) {
+    throw;
+  } catch (const scenarios::InputError& error) {
+    // With the cause inside, for users who want more than its text.
+    std::throw_with_nested(scenarios::InputError(fmt::format("{}: {}", text(), error.what())));
+  } catch (const std::exception& error) {
+    throw JobFailed(
+        fmt::format("{}: {} (simbench {}, commit {})", text(), error.what(), version(), commit()));
+  }
+}
 
 double CpuTime::seconds() const {
   const std::lock_guard lock(mutex_);

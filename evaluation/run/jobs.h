@@ -23,10 +23,14 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 namespace simbench::evaluation {
 
@@ -43,6 +47,23 @@ using WorkerFactory = std::function<Job()>;
 bool run_jobs(std::size_t count, const JobOptions& options, const Job& job);
 bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
                            const WorkerFactory& make_worker);
+
+// What a job has thrown, with scenario, pipeline, seed, version and commit.
+class JobFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct JobName {
+  std::string scenario;
+  std::string pipeline;
+  std::uint64_t seed = 0;
+};
+
+// Runs a job whose errors name it. Throws scenarios::InputError for a world that its backend
+// refuses, with the job's name; RecordingCancelled as it is; JobFailed for any other exception of
+// `action`.
+void run_named(const JobName& name, const std::function<void()>& action);
 
 // The CPU time that threads have taken, added up.
 class CpuTime {
@@ -67,6 +88,16 @@ class CpuTimer {
  private:
   CpuTime& total_;
   double begin_;
+};
+
+// One thread's backend, whose CPU time ends when it is gone.
+template <class Source>
+struct TimedWorker {
+  TimedWorker(CpuTime& total, const std::function<std::unique_ptr<Source>()>& make_source)
+      : timer(total), source(make_source()) {}
+
+  CpuTimer timer;
+  std::unique_ptr<Source> source;
 };
 
 // The remaining jobs, for callers that give some of them to other processes. Thread-safe.

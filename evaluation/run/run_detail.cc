@@ -172,10 +172,9 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     companions_[frame.source].global[*index] = frame.stamp;
   }
 
-  void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) override {
+  void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime) override {
     SetDetail detail;
     detail.complete = complete;
-    detail.emitted_ms = from_zero_ms(HostTime(now.time_since_epoch()));
     std::map<std::int64_t, std::size_t> members_of_pulse;
     GlobalTime first = GlobalTime::max();
     GlobalTime last = GlobalTime::min();

@@ -83,7 +83,6 @@ struct SetDetail {
   bool complete = false;        // no source is missing
   bool pure = false;            // all members of one pulse
   double range_ms = 0;          // of the members' stamps
-  double emitted_ms = 0;        // arrival of the frame whose push emitted it, from zero
 };
 
 // System clocks minus the master's at one instant.

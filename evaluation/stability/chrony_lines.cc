@@ -5,6 +5,7 @@
 
 #include "evaluation/stability/log_lines.h"
 #include "recording/counted.h"
+#include "recording/number_in.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -18,9 +19,9 @@ bool is_leap_status(std::string_view word) {
 
 std::optional<std::chrono::sys_days> day_of(std::string_view word) {
   if (word.size() != 10 || word[4] != '-' || word[7] != '-') return std::nullopt;
-  const auto year = whole_of(word.substr(0, 4));
-  const auto month = whole_of(word.substr(5, 2));
-  const auto day = whole_of(word.substr(8, 2));
+  const auto year = number_in<std::int64_t>(word.substr(0, 4));
+  const auto month = number_in<std::int64_t>(word.substr(5, 2));
+  const auto day = number_in<std::int64_t>(word.substr(8, 2));
   if (!year || !month || !day || *year < 1900 || *month < 1 || *day < 1) return std::nullopt;
   const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
                                          std::chrono::month(static_cast<unsigned>(*month)),
@@ -32,8 +33,8 @@ std::optional<std::chrono::sys_days> day_of(std::string_view word) {
 
 std::optional<Microseconds> time_of_day(std::string_view word) {
   if (word.size() < 8 || word[2] != ':' || word[5] != ':') return std::nullopt;
-  const auto hour = whole_of(word.substr(0, 2));
-  const auto minute = whole_of(word.substr(3, 2));
+  const auto hour = number_in<std::int64_t>(word.substr(0, 2));
+  const auto minute = number_in<std::int64_t>(word.substr(3, 2));
   const auto second = microseconds_of(word.substr(6));
   if (!hour || !minute || !second) return std::nullopt;
   const bool in_day = *hour >= 0 && *hour < 24 && *minute >= 0 && *minute < 60;
@@ -106,7 +107,8 @@ ChronyLog chrony_log_of(std::string_view line) {
     return tracking ? ChronyLog::kTracking : ChronyLog::kOther;
   }
   if (!day_of(words[0]) || !time_of_day(words[1])) return ChronyLog::kNone;
-  if (words.size() >= kTrackingWords && whole_of(words[3]) && is_leap_status(words[7])) {
+  if (words.size() >= kTrackingWords && number_in<std::int64_t>(words[3]) &&
+      is_leap_status(words[7])) {
     return ChronyLog::kTracking;
   }
   const bool statistics = words.size() >= kStatisticsWords &&

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "evaluation/stability/log_lines.h"
+#include "recording/collected.h"
 #include "recording/counted.h"
 #include "recording/line_reader.h"
 #include "recording/text_fields.h"
@@ -88,8 +89,7 @@ ClockLog LogAssembly::finish(bool torn) {
   if (points_.empty()) {
     std::string problem = "the file ends without a time error";
     if (!options_.series.empty() && !series_.empty()) {
-      std::vector<std::string> names;
-      for (const std::string& name : series_) names.push_back(quoted_bytes(name));
+      const std::vector<std::string> names = collected(series_, quoted_bytes);
       problem += fmt::format(" of the series {}, allowed: {}", quoted_bytes(options_.series),
                              fmt::join(names, ", "));
     }

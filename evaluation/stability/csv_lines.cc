@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "evaluation/stability/log_lines.h"
+#include "recording/number_in.h"
 #include "recording/text_fields.h"
 
 namespace simbench::evaluation {
@@ -87,7 +88,7 @@ class CsvLines final : public LogLines {
   }
 
  private:
-  // Of the first line; whether it has names.
+  // Reads the first line; returns whether it has names.
   bool begin(const std::vector<std::string_view>& cells, const LogPlace& place) {
     const bool names = std::all_of(cells.begin(), cells.end(), is_column_name);
     columns_ = cells.size();
@@ -109,7 +110,7 @@ class CsvLines final : public LogLines {
                         const LogPlace& place) const {
     const auto wanted = std::find(cells.begin() + 1, cells.end(), options_.series);
     if (names && wanted != cells.end()) return static_cast<std::size_t>(wanted - cells.begin());
-    const std::optional<std::int64_t> number = whole_of(options_.series);
+    const std::optional<std::int64_t> number = number_in<std::int64_t>(options_.series);
     if (number && *number >= 2 && *number <= static_cast<std::int64_t>(cells.size())) {
       return static_cast<std::size_t>(*number - 1);
     }

@@ -5,6 +5,7 @@
 
 #include "evaluation/stability/log_lines.h"
 #include "recording/counted.h"
+#include "recording/number_in.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -97,7 +98,7 @@ class LinuxptpLines final : public LogLines {
   std::optional<LogLine> measured(std::string_view series,
                                   const std::vector<std::string_view>& words, std::size_t at,
                                   std::string_view stamp, const LogPlace& place) {
-    if (!whole_of(words[at])) {
+    if (!number_in<std::int64_t>(words[at])) {
       // Prose about offsets has no digits here.
       if (words[at].find_first_of("0123456789") == std::string_view::npos && words[at] != "nan" &&
           words[at] != "inf") {

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <system_error>
+#include <optional>
 #include <vector>
 
+#include "recording/number_in.h"
 #include "recording/text_fields.h"
 #include "scenarios/loader.h"
 
@@ -25,7 +25,7 @@ constexpr std::int64_t kDaySeconds = 86'400;
 
 bool is_loopstats(const std::vector<std::string_view>& words) {
   if (words.size() < 3 || words.size() > 7) return false;
-  const std::optional<std::int64_t> day = whole_of(words[0]);
+  const std::optional<std::int64_t> day = number_in<std::int64_t>(words[0]);
   return day && *day >= kFirstDay && *day <= kLastDay && microseconds_of(words[1]);
 }
 
@@ -42,7 +42,7 @@ class LoopstatsLines final : public LogLines {
                       "complete?",
                       words.size()));
     }
-    const std::optional<std::int64_t> day = whole_of(words[0]);
+    const std::optional<std::int64_t> day = number_in<std::int64_t>(words[0]);
     if (!day || *day < kFirstDay || *day > kLastDay) {
       place.fail("day", words[0],
                  fmt::format("a modified Julian day from {} to {}", kFirstDay, kLastDay));
@@ -83,13 +83,9 @@ std::vector<std::string_view> words_of(std::string_view line) {
 double finite_of(std::string_view text, const char* what, double largest, const LogPlace& place) {
   std::string_view digits = text;
   if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
-  double value = 0;
-  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool whole = stop == digits.data() + digits.size();
-  if (error != std::errc() || !whole || !(std::abs(value) <= largest)) {
-    place.fail(what, text, fmt::format("a number up to {:g}", largest));
-  }
-  return value;
+  const std::optional<double> value = number_in<double>(digits);
+  if (value && std::abs(*value) <= largest) return *value;
+  place.fail(what, text, fmt::format("a number up to {:g}", largest));
 }
 
 std::optional<Microseconds> microseconds_of(std::string_view seconds) {
@@ -98,13 +94,6 @@ std::optional<Microseconds> microseconds_of(std::string_view seconds) {
   const std::optional<Nanoseconds> found = parse_ms(seconds, kLargest);
   if (!found) return std::nullopt;
   return Microseconds(found->count());
-}
-
-std::optional<std::int64_t> whole_of(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 std::unique_ptr<LogLines> loopstats_lines() { return std::make_unique<LoopstatsLines>(); }

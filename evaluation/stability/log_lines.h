@@ -56,7 +56,6 @@ std::vector<std::string_view> words_of(std::string_view line);
 double finite_of(std::string_view text, const char* what, double largest, const LogPlace& place);
 // Seconds up to 4e11 (12,000 years) either way, to the microsecond.
 std::optional<Microseconds> microseconds_of(std::string_view seconds);
-std::optional<std::int64_t> whole_of(std::string_view text);
 
 std::unique_ptr<LogLines> csv_lines(const ClockLogOptions& options);
 std::unique_ptr<LogLines> chrony_lines(bool tracking);

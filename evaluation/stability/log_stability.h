@@ -4,9 +4,9 @@
 // The interval is the median distance of neighbouring points, or the one that is stated. From the
 // last point taken, the next one is that which comes one interval later, to within kGridShare of
 // it; points that come earlier are left out, and where none comes there is a gap: a new piece
-// begins with the next point. So pauses and other polling intervals separate pieces, and nothing is
-// interpolated or moved. The interval of the result is the mean distance of neighbours within the
-// pieces.
+// begins with the next point. Pauses and other polling intervals thus separate pieces, and nothing
+// is interpolated or moved. The interval of the result is the mean distance of neighbours within
+// the pieces.
 //
 // Errors: scenarios::InputError for a log of a single point. Complexity: O(N log N).
 //

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 #include "algorithms/ports/assert.h"
@@ -18,7 +17,7 @@ struct Pooled {
   std::int64_t terms = 0;
 };
 
-// Of close numbers the inner differences are exact, whatever their common offset.
+// The inner differences of close numbers are exact, whatever their common offset.
 double second_difference(const double* x, std::size_t m) {
   return (x[2 * m] - x[m]) - (x[m] - x[0]);
 }
@@ -177,7 +176,9 @@ std::vector<StabilityPoint> deviation_over_octaves(const TimeErrorSeries& series
 }
 
 Stability stability_of(const TimeErrorSeries& series) {
-  Stability stability{.interval_s = series.interval_s, .points = points_in(series)};
+  Stability stability;
+  stability.interval_s = series.interval_s;
+  stability.points = points_in(series);
   for (const TimeErrorPiece& piece : series.pieces) stability.pieces += piece.x_s.empty() ? 0 : 1;
   stability.adev = deviation_over_octaves(series, Deviation::kAdev);
   stability.mdev = deviation_over_octaves(series, Deviation::kMdev);

@@ -37,6 +37,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "evaluation/stability/time_error.h"
@@ -67,17 +68,39 @@ std::optional<StabilityPoint> deviation_at(const TimeErrorSeries& series, Deviat
 std::vector<StabilityPoint> deviation_over_octaves(const TimeErrorSeries& series,
                                                    Deviation deviation);
 
-// All of that over octaves, with the time error itself; ADEV and HDEV are the overlapping ones. Of
-// a series without points everything is 0 and empty.
-struct Stability {
-  double interval_s = 0;
-  std::int64_t points = 0;
-  std::int64_t pieces = 0;  // that have points
+// All of that over octaves; ADEV and HDEV are the overlapping ones.
+struct StabilityCurves {
   std::vector<StabilityPoint> adev{};
   std::vector<StabilityPoint> mdev{};
   std::vector<StabilityPoint> hdev{};
   std::vector<StabilityPoint> tdev_ms{};
   std::vector<StabilityPoint> mtie_ms{};
+};
+
+// What each curve is called in files and figures, and where it is kept.
+struct ClockCurve {
+  const char* id;  // in JSON and CSV
+  const char* title;
+  const char* axis;  // with its unit
+  bool in_text;      // and in figures
+  std::vector<StabilityPoint> StabilityCurves::*points;
+};
+
+inline constexpr ClockCurve kClockCurves[] = {
+    {"adev", "Allan deviation", "ADEV", true, &StabilityCurves::adev},
+    {"mdev", "Modified Allan deviation", "MDEV", false, &StabilityCurves::mdev},
+    {"hdev", "Hadamard deviation", "HDEV", false, &StabilityCurves::hdev},
+    {"tdev_ms", "Time deviation, ms", "TDEV ms", true, &StabilityCurves::tdev_ms},
+    {"mtie_ms", "Maximum time interval error, ms", "MTIE ms", true, &StabilityCurves::mtie_ms},
+};
+inline std::span<const ClockCurve> clock_curves() { return kClockCurves; }
+
+// The curves of a series, with the time error itself.
+// Everything of a series without points is 0 and empty.
+struct Stability : StabilityCurves {
+  double interval_s = 0;
+  std::int64_t points = 0;
+  std::int64_t pieces = 0;  // that have points
   TimeErrorSummary time_error{};
   std::vector<TimeErrorStep> steps{};
 };

@@ -21,7 +21,7 @@ double time_of(const TimeErrorSeries& series, const TimeErrorPiece& piece, std::
   return piece.start_s + static_cast<double>(i) * series.interval_s;
 }
 
-// Of each difference but the first and the last, from the median of its neighbours.
+// How far each difference but the first and the last is from the median of its neighbours.
 std::vector<double> jumps_of(std::span<const double> x) {
   std::vector<double> jumps;
   std::vector<double> near;

@@ -44,9 +44,9 @@ std::int64_t points_in(const TimeErrorSeries& series);
 // scatter is 1.4826 times the median absolute distance over the series (the standard deviation, for
 // normal noise), where that is 0 (a constant, coarse steps of a counter) the mean absolute one. A
 // jump that the next difference takes back by more than half is counted together with that: what
-// then remains may be a step, and a single outlier leaves nothing. So noise, drift and outliers
-// are no steps. The first and the last difference of a piece are none, since nothing shows whether
-// they stay, and a series with fewer than kFewestDifferences has none.
+// then remains may be a step, and a single outlier leaves nothing. Noise, drift and outliers
+// are thus no steps. The first and the last difference of a piece are none, since nothing shows
+// whether they stay, and a series with fewer than kFewestDifferences has none.
 struct TimeErrorStep {
   double at_s = 0;    // the first point behind it
   double step_s = 0;  // less what the neighbours' drift explains

@@ -19,7 +19,8 @@ constexpr double kMostSeeds = 1e15;  // the largest number needed that is report
 using StudentsT = boost::math::students_t_distribution<double, InDouble>;
 using Normal = boost::math::normal_distribution<double, InDouble>;
 
-// So many subsets that the smallest p-value is an eighth of what Holm's first step asks for.
+// The number of subsets, as bits, with which the smallest p-value is an eighth of what Holm's first
+// step asks for.
 unsigned subset_bits(std::size_t tests) {
   constexpr double kTimesFiner = 8;
   constexpr unsigned kFewestBits = 12;

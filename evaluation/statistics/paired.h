@@ -37,7 +37,7 @@
 
 namespace simbench::evaluation {
 
-// Of all tests that are made together.
+// The probability of any false verdict among all tests that are made together.
 inline constexpr double kFamilyError = 0.05;
 
 struct PairedValues {

@@ -100,8 +100,8 @@ Placement placement_of(const Percentile& percentile);
 // The 95 % interval of the median of n seeds, from one large run that stands for the distribution.
 //
 // The median of n draws is near the order statistic of rank (n + 1) / 2, which is Beta-distributed
-// for uniform draws. So the interval runs between two quantiles of the large run, without any
-// assumption about the distribution. Source: David and Nagaraja, Order Statistics, 2003, 2.1.
+// for uniform draws. The interval therefore runs between two quantiles of the large run, without
+// any assumption about the distribution. Source: David and Nagaraja, Order Statistics, 2003, 2.1.
 struct MedianInterval {
   std::int64_t seeds = 0;
   double low = 0;

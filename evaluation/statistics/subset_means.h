@@ -4,7 +4,7 @@
 // has either sign with the same probability, whatever its size. Then the true mean 0 is equally
 // likely to lie in any of the gaps between the ordered means of all 2^n - 1 nonempty subsets of n
 // differences (J. A. Hartigan, "Using subsample values as typical values", J. Am. Stat. Assoc. 64,
-// 1969). So, exactly and for tails of any weight,
+// 1969). It follows, exactly and for tails of any weight,
 //
 //   p(0)      2 (1 + the smaller of the numbers of means from 0 on and up to 0) / 2^n, at most 1
 //   interval  from the k-th smallest to the k-th largest mean, k = floor(2^n error / 2)

@@ -9,12 +9,12 @@
 #include <mutex>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "recording/number_in.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -39,11 +39,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 std::optional<double> number_of(const std::string& text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const std::optional<double> value = number_in<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 // The decimals in a number's text: 0.25 has 2, 3e-4 has 4.

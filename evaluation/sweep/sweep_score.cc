@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/number_in.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -40,12 +41,9 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
   while (true) {
     const std::size_t comma = text.find(',');
     const std::string_view cell = text.substr(0, comma);
-    double value = kNan;
-    if (!cell.empty()) {
-      const auto [stop, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (error != std::errc() || stop != cell.data() + cell.size()) return std::nullopt;
-    }
-    numbers.push_back(value);
+    const std::optional<double> value = cell.empty() ? kNan : number_in<double>(cell);
+    if (!value) return std::nullopt;
+    numbers.push_back(*value);
     if (comma == std::string_view::npos) return numbers;
     text.remove_prefix(comma + 1);
   }
@@ -87,8 +85,6 @@ std::optional<SweepScore> score_of(std::string_view text, ResultKind kind) {
   score.host_errors_ms = *errors;
   return score;
 }
-
-std::string_view cells_of(std::string_view text) { return text.substr(0, text.find(';')); }
 
 namespace {
 

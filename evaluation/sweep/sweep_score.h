@@ -38,8 +38,6 @@ SweepScore sweep_score(const Row& row, ResultKind kind = ResultKind::kCaptures);
 std::string text_of(const SweepScore& score);
 // Returns nothing for another text.
 std::optional<SweepScore> score_of(std::string_view text, ResultKind kind = ResultKind::kCaptures);
-// Returns the part of the text before the semicolon: cells for a CSV.
-std::string_view cells_of(std::string_view text);
 
 // The response of the metrics to the swept values: one pipeline at one point, over all seeds.
 struct ResponseRow {
@@ -47,7 +45,7 @@ struct ResponseRow {
   std::size_t pipeline = 0;
   ResultKind kind = ResultKind::kCaptures;
   std::vector<Series> series{};  // of every column of sweep.csv, over the seeds
-  // Of captures, over all seeds; margin_ms is the median of the seeds'.
+  // What captures have over all seeds; margin_ms is the median of the seeds'.
   PooledValues pooled{};
   std::vector<Series> hosts{};  // |mean clock error| of each host; the master's is first
 

@@ -10,12 +10,9 @@
 #include "app/interrupt.h"
 #include "app/results.h"
 #include "evaluation/clock_run/clock_evaluation.h"
-#include "evaluation/run/ad_hoc_pipelines.h"
 #include "python/src/bindings.h"
 #include "python/src/run.h"
 #include "python/src/work.h"
-#include "recording/version.h"
-#include "reports/clocks/clock_answer.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/results/csv.h"
 #include "scenarios/loader.h"
@@ -37,12 +34,7 @@ std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t du
   auto run = std::make_shared<ClockRun>();
   run->provenance.command = request.command;
   run->provenance.started = std::chrono::system_clock::now();
-  std::vector<scenarios::Override> overrides;
-  for (const auto& [pointer, value] : request.sets) overrides.push_back({pointer, value});
-  run->scenario = scenarios::load_scenario(
-      request.scenario,
-      evaluation::with_ad_hoc_pipelines(request.scenario, overrides, request.pipelines,
-                                        evaluation::AdHoc::kHostSyncToo));
+  run->scenario = load_scenario(request);
   evaluation::ClockOptions options{.duration_s = duration_s,
                                    .from_s = from_s,
                                    .first_seed = request.first_seed,

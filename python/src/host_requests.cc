@@ -9,7 +9,7 @@
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstring>
-#include <map>
+#include <iterator>
 #include <stdexcept>
 
 namespace simbench::python {
@@ -20,36 +20,6 @@ namespace asio = boost::asio;
 // Times within it can be subtracted.
 constexpr std::int64_t kFarthestNs = 4'000'000'000'000'000'000;
 constexpr std::int64_t kLongestNs = 86'400 * 365 * kSecondNs;  // of a wait
-
-struct OperationName {
-  HostOperation operation;
-  std::size_t arguments;
-};
-
-const std::map<std::string, OperationName, std::less<>>& operations() {
-  static const std::map<std::string, OperationName, std::less<>> all = {
-      {"now", {HostOperation::kNow, 0}},
-      {"set", {HostOperation::kSet, 1}},
-      {"step", {HostOperation::kStep, 1}},
-      {"adjust_frequency", {HostOperation::kAdjustFrequency, 1}},
-      {"slew", {HostOperation::kSlew, 2}},
-      {"sleep_for", {HostOperation::kSleepFor, 1}},
-      {"sleep_until", {HostOperation::kSleepUntil, 1}},
-      {"send", {HostOperation::kSend, 3}},
-      {"receive", {HostOperation::kReceive, 3}},
-      {"exchange", {HostOperation::kExchange, 4}},
-      {"transmit_stamp", {HostOperation::kTransmitStamp, 4}},
-      {"hardware_transmit_stamp", {HostOperation::kHardwareTransmitStamp, 4}},
-      {"cross_stamp", {HostOperation::kCrossStamp, 0}},
-      {"step_card", {HostOperation::kStepCard, 1}},
-      {"adjust_card", {HostOperation::kAdjustCard, 1}},
-      {"next_frame", {HostOperation::kNextFrame, 1}},
-      {"adjust_frame", {HostOperation::kAdjustFrame, 2}},
-      {"insert_frame", {HostOperation::kInsertFrame, 2}},
-      {"frame_length", {HostOperation::kFrameLength, 2}},
-      {"start_at", {HostOperation::kStartAt, 2}}};
-  return all;
-}
 
 Bytes bytes_of(const py::handle& object) {
   char* data = nullptr;
@@ -74,79 +44,6 @@ std::int64_t interval_ns(const py::handle& object) {
   return std::clamp<std::int64_t>(object.cast<std::int64_t>(), 0, kLongestNs);
 }
 
-bool sets_a_clock(HostOperation operation) {
-  switch (operation) {
-    case HostOperation::kSet:
-    case HostOperation::kStep:
-    case HostOperation::kAdjustFrequency:
-    case HostOperation::kSlew:
-    case HostOperation::kStepCard:
-    case HostOperation::kAdjustCard:
-      return true;
-    default:
-      return false;
-  }
-}
-
-// A request of a channel: the peer, whether it is the stream, then its own arguments.
-void read_channel(const py::tuple& tuple, const HostPort& port, HostRequest& made) {
-  made.peer = tuple[1].cast<PeerId>();
-  made.transport = tuple[2].cast<bool>() ? Transport::kStream : port.datagrams;
-  if (port.steers() && made.transport == Transport::kStream) {
-    throw py::value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
-  }
-  if (!port.peers.contains(made.peer)) {
-    throw py::value_error("channel: found host " + std::to_string(made.peer) +
-                          ", allowed: of a slave the master, 0; of the master its slaves");
-  }
-  switch (made.operation) {
-    case HostOperation::kSend:
-      made.bytes = bytes_of(tuple[3]);
-      break;
-    case HostOperation::kReceive:
-      made.ns = interval_ns(tuple[3]);
-      break;
-    case HostOperation::kExchange:
-      made.bytes = bytes_of(tuple[3]);
-      made.ns = interval_ns(tuple[4]);
-      break;
-    default:  // the stamps of a message
-      made.message = tuple[3].cast<MessageId>();
-      made.ns = interval_ns(tuple[4]);
-      break;
-  }
-}
-
-// Of a request of a camera.
-std::uint32_t camera_place(const py::handle& object, const HostPort& port) {
-  const auto place = object.cast<std::uint32_t>();
-  if (place < port.cameras.size()) return place;
-  throw py::value_error("camera: found the one at place " + std::to_string(place) +
-                        ", allowed: those of the host");
-}
-
-// What host and stage refuse.
-void check_allowed(const HostRequest& request, const HostPort& port) {
-  const HostOperation operation = request.operation;
-  if (port.steers() && sets_a_clock(operation)) {
-    throw py::value_error("a capture_alignment sets no clock; that is the part of host_sync");
-  }
-  const bool is_on_card = operation == HostOperation::kCrossStamp ||
-                          operation == HostOperation::kStepCard ||
-                          operation == HostOperation::kAdjustCard;
-  if (is_on_card && port.get().hardware_clock() == nullptr) {
-    throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
-  }
-  const bool receives =
-      operation == HostOperation::kReceive || operation == HostOperation::kExchange;
-  if (receives && port.receiving.contains({request.peer, request.transport})) {
-    throw py::value_error("another coroutine of this host waits on this channel");
-  }
-  if (operation == HostOperation::kNextFrame && port.watching.contains(request.camera)) {
-    throw py::value_error("another coroutine waits for a frame of this camera");
-  }
-}
-
 }  // namespace
 
 HostPort::HostPort(Host& of_run, std::set<PeerId> peers_of_run, Transport datagrams_of_run)
@@ -158,61 +55,6 @@ HostPort::HostPort(Host& of_run, std::set<PeerId> peers_of_run, Transport datagr
 Host& HostPort::get() const {
   if (host == nullptr) throw std::runtime_error("the host's run is over");
   return *host;
-}
-
-HostRequest host_request(const py::handle& request, const HostPort& port) {
-  const bool is_request = py::isinstance<py::tuple>(request) && py::len(request) > 0 &&
-                          py::isinstance<py::str>(request[py::int_(0)]);
-  const auto tuple = is_request ? py::reinterpret_borrow<py::tuple>(request) : py::tuple(0);
-  const auto found =
-      is_request ? operations().find(tuple[0].cast<std::string>()) : operations().end();
-  if (found == operations().end() || tuple.size() != found->second.arguments + 1) {
-    throw py::type_error(
-        "awaits something that is no operation of its host; asyncio does not run here: "
-        "await host.sleep_for(), host.clock.now(), host.channel(peer).receive() and the like");
-  }
-  HostRequest made{.operation = found->second.operation};
-  switch (made.operation) {
-    case HostOperation::kNow:
-    case HostOperation::kCrossStamp:
-      break;
-    case HostOperation::kSet:
-    case HostOperation::kStep:
-    case HostOperation::kSleepUntil:
-    case HostOperation::kStepCard:
-      made.ns = time_ns(tuple[1]);
-      break;
-    case HostOperation::kSleepFor:
-      made.ns = interval_ns(tuple[1]);
-      break;
-    case HostOperation::kAdjustFrequency:
-    case HostOperation::kAdjustCard:
-      made.ppb = tuple[1].cast<double>();
-      break;
-    case HostOperation::kSlew:
-      made.ns = time_ns(tuple[1]);
-      made.ppb = tuple[2].cast<double>();
-      break;
-    case HostOperation::kSend:
-    case HostOperation::kReceive:
-    case HostOperation::kExchange:
-    case HostOperation::kTransmitStamp:
-    case HostOperation::kHardwareTransmitStamp:
-      read_channel(tuple, port, made);
-      break;
-    case HostOperation::kNextFrame:
-      made.camera = camera_place(tuple[1], port);
-      break;
-    case HostOperation::kAdjustFrame:
-    case HostOperation::kInsertFrame:
-    case HostOperation::kFrameLength:
-    case HostOperation::kStartAt:
-      made.camera = camera_place(tuple[1], port);
-      made.ns = time_ns(tuple[2]);
-      break;
-  }
-  check_allowed(made, port);
-  return made;
 }
 
 namespace {
@@ -248,7 +90,7 @@ std::optional<Question> decoded(const Bytes& bytes) {
 // One receive at a time on a channel, and none after the run.
 class Receiving {
  public:
-  Receiving(std::shared_ptr<HostPort> port, const HostRequest& request)
+  Receiving(SharedPort port, const HostRequest& request)
       : port_(std::move(port)), place_(request.peer, request.transport) {
     port_->receiving.insert(place_);
   }
@@ -257,11 +99,11 @@ class Receiving {
   ~Receiving() { port_->receiving.erase(place_); }
 
  private:
-  std::shared_ptr<HostPort> port_;
+  SharedPort port_;
   std::pair<PeerId, Transport> place_;
 };
 
-Task<HostAnswer> exchanged(HostRequest request, std::shared_ptr<HostPort> port) {
+Task<HostAnswer> exchanged(HostRequest request, SharedPort port) {
   const Receiving receiving(port, request);
   Host& host = *port->host;
   MessageChannel& channel = host.open_channel(request.peer, request.transport);
@@ -295,37 +137,10 @@ HostAnswer answer_with(const std::optional<Time>& time) {
   return nanoseconds_of(*time);
 }
 
-Task<HostAnswer> messaged(HostRequest request, std::shared_ptr<HostPort> port) {
-  Host& host = *port->host;
-  if (request.operation == HostOperation::kExchange) {
-    co_return co_await exchanged(std::move(request), std::move(port));
-  }
-  MessageChannel& channel = host.open_channel(request.peer, request.transport);
-  const SteadyTime deadline = host.steady_clock().now() + Nanoseconds(request.ns);
-  if (request.operation == HostOperation::kSend) {
-    const MessageId id = co_await channel.send(std::move(request.bytes));
-    co_return static_cast<std::int64_t>(id);
-  }
-  if (request.operation == HostOperation::kReceive) {
-    const Receiving receiving(port, request);
-    std::optional<ReceivedMessage> received = co_await channel.receive(deadline);
-    if (!received) co_return std::monostate{};
-    co_return std::move(*received);
-  }
-  if (request.operation == HostOperation::kTransmitStamp) {
-    const std::optional<HostTime> left = co_await channel.transmit_stamp(request.message, deadline);
-    co_return answer_with(left);
-  }
-  const std::optional<HardwareTime> left =
-      co_await channel.hardware_transmit_stamp(request.message, deadline);
-  co_return answer_with(left);
-}
-
 // One wait at a time for a camera's frames.
 class Watching {
  public:
-  Watching(std::shared_ptr<HostPort> port, std::uint32_t camera)
-      : port_(std::move(port)), camera_(camera) {
+  Watching(SharedPort port, std::uint32_t camera) : port_(std::move(port)), camera_(camera) {
     port_->watching.insert(camera_);
   }
   Watching(const Watching&) = delete;
@@ -333,92 +148,249 @@ class Watching {
   ~Watching() { port_->watching.erase(camera_); }
 
  private:
-  std::shared_ptr<HostPort> port_;
+  SharedPort port_;
   std::uint32_t camera_;
 };
 
-Task<HostAnswer> steered(HostRequest request, std::shared_ptr<HostPort> port) {
-  SteeredCamera& camera = port->cameras[request.camera];
-  const Nanoseconds ns(request.ns);
-  bool is_taken = false;
-  switch (request.operation) {
-    case HostOperation::kNextFrame: {
-      const Watching watching(port, request.camera);
-      const ExposedFrame frame = co_await camera.next_frame();
-      co_return SteeredFrame{frame, camera.is_settled(frame)};
-    }
-    case HostOperation::kAdjustFrame:
-      is_taken = co_await camera.adjust_frame(ns);
-      break;
-    case HostOperation::kInsertFrame:
-      is_taken = co_await camera.insert_frame(ns);
-      break;
-    case HostOperation::kFrameLength:
-      is_taken = co_await camera.set_frame_length(ns);
-      break;
-    default:
-      is_taken = co_await camera.start_at(HostTime(ns));
-      break;
-  }
+Nanoseconds ns_of(const HostRequest& request) { return Nanoseconds(request.ns); }
+
+SteadyTime deadline_of(const HostRequest& request, const SharedPort& port) {
+  return port->host->steady_clock().now() + ns_of(request);
+}
+
+MessageChannel& channel_of(const HostRequest& request, const SharedPort& port) {
+  return port->host->open_channel(request.peer, request.transport);
+}
+
+// The clock has been adjusted for the first time: from now on it counts as synchronised.
+std::monostate adjusted(HostPort& port) {
+  if (port.host->id() != 0) port.outcome.synchronised(port.exchanges);
+  return {};
+}
+
+template <Task<bool> (SteeredCamera::*Control)(Nanoseconds)>
+Task<HostAnswer> controlled(HostRequest request, SharedPort port) {
+  const bool is_taken = co_await (port->cameras[request.camera].*Control)(ns_of(request));
   co_return is_taken;
+}
+
+// Readers of the arguments of requests, which are those of simbench/host.py.
+using Arguments = const py::tuple&;
+
+void read_nothing(Arguments, const HostPort&, HostRequest&) {}
+void read_time(Arguments all, const HostPort&, HostRequest& made) { made.ns = time_ns(all[1]); }
+void read_interval(Arguments all, const HostPort&, HostRequest& made) {
+  made.ns = interval_ns(all[1]);
+}
+void read_rate(Arguments all, const HostPort&, HostRequest& made) {
+  made.ppb = all[1].cast<double>();
+}
+void read_slew(Arguments all, const HostPort&, HostRequest& made) {
+  made.ns = time_ns(all[1]);
+  made.ppb = all[2].cast<double>();
+}
+
+// The peer, and whether it is the stream.
+void read_channel(Arguments all, const HostPort& port, HostRequest& made) {
+  made.peer = all[1].cast<PeerId>();
+  made.transport = all[2].cast<bool>() ? Transport::kStream : port.datagrams;
+  if (port.steers() && made.transport == Transport::kStream) {
+    throw py::value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
+  }
+  if (!port.peers.contains(made.peer)) {
+    throw py::value_error("channel: found host " + std::to_string(made.peer) +
+                          ", allowed: of a slave the master, 0; of the master its slaves");
+  }
+}
+void read_message(Arguments all, const HostPort& port, HostRequest& made) {
+  read_channel(all, port, made);
+  made.bytes = bytes_of(all[3]);
+}
+void read_wait(Arguments all, const HostPort& port, HostRequest& made) {
+  read_channel(all, port, made);
+  made.ns = interval_ns(all[3]);
+}
+void read_question(Arguments all, const HostPort& port, HostRequest& made) {
+  read_message(all, port, made);
+  made.ns = interval_ns(all[4]);
+}
+void read_stamp(Arguments all, const HostPort& port, HostRequest& made) {
+  read_channel(all, port, made);
+  made.message = all[3].cast<MessageId>();
+  made.ns = interval_ns(all[4]);
+}
+
+void read_camera(Arguments all, const HostPort& port, HostRequest& made) {
+  made.camera = all[1].cast<std::uint32_t>();
+  if (made.camera < port.cameras.size()) return;
+  throw py::value_error("camera: found the one at place " + std::to_string(made.camera) +
+                        ", allowed: those of the host");
+}
+void read_control(Arguments all, const HostPort& port, HostRequest& made) {
+  read_camera(all, port, made);
+  made.ns = time_ns(all[2]);
+}
+
+// What an operation changes or waits for, which stage or host may refuse.
+enum class Touches : std::uint8_t { kNothing, kClock, kCard, kCardsClock, kChannel, kCamera };
+
+}  // namespace
+
+struct HostOperation {
+  const char* name;
+  std::size_t arguments;
+  void (*read)(const py::tuple& all, const HostPort& port, HostRequest& made);
+  Task<HostAnswer> (*done)(HostRequest request, SharedPort port);
+  Touches touches = Touches::kNothing;
+};
+
+namespace {
+
+constexpr HostOperation kOperations[] = {
+    {"now", 0, read_nothing,
+     [](HostRequest, SharedPort port) -> Task<HostAnswer> {
+       const HostTime now = co_await port->host->clock().now();
+       co_return nanoseconds_of(now);
+     }},
+    {"set", 1, read_time,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->clock().set(HostTime(ns_of(request)));
+       co_return adjusted(*port);
+     },
+     Touches::kClock},
+    {"step", 1, read_time,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const HostTime now = co_await port->host->clock().now();
+       co_await port->host->clock().set(now + ns_of(request));
+       co_return adjusted(*port);
+     },
+     Touches::kClock},
+    {"adjust_frequency", 1, read_rate,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->clock().adjust_frequency(request.ppb);
+       co_return adjusted(*port);
+     },
+     Touches::kClock},
+    {"slew", 2, read_slew,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->clock().slew(ns_of(request), request.ppb);
+       co_return adjusted(*port);
+     },
+     Touches::kClock},
+    {"sleep_for", 1, read_interval,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->sleep_for(ns_of(request));
+       co_return std::monostate{};
+     }},
+    {"sleep_until", 1, read_time,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->sleep_until(HostTime(ns_of(request)));
+       co_return std::monostate{};
+     }},
+    {"send", 3, read_message,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const MessageId id = co_await channel_of(request, port).send(std::move(request.bytes));
+       co_return static_cast<std::int64_t>(id);
+     }},
+    {"receive", 3, read_wait,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const Receiving receiving(port, request);
+       std::optional<ReceivedMessage> received =
+           co_await channel_of(request, port).receive(deadline_of(request, port));
+       if (!received) co_return std::monostate{};
+       co_return std::move(*received);
+     },
+     Touches::kChannel},
+    {"exchange", 4, read_question, exchanged, Touches::kChannel},
+    {"transmit_stamp", 4, read_stamp,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const std::optional<HostTime> left =
+           co_await channel_of(request, port)
+               .transmit_stamp(request.message, deadline_of(request, port));
+       co_return answer_with(left);
+     }},
+    {"hardware_transmit_stamp", 4, read_stamp,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const std::optional<HardwareTime> left =
+           co_await channel_of(request, port)
+               .hardware_transmit_stamp(request.message, deadline_of(request, port));
+       co_return answer_with(left);
+     }},
+    {"cross_stamp", 0, read_nothing,
+     [](HostRequest, SharedPort port) -> Task<HostAnswer> {
+       const CrossStamp stamp = co_await port->host->hardware_clock()->cross_stamp();
+       co_return stamp;
+     },
+     Touches::kCard},
+    {"step_card", 1, read_time,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->hardware_clock()->step(ns_of(request));
+       co_return std::monostate{};
+     },
+     Touches::kCardsClock},
+    {"adjust_card", 1, read_rate,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       co_await port->host->hardware_clock()->adjust_frequency(request.ppb);
+       co_return std::monostate{};
+     },
+     Touches::kCardsClock},
+    {"next_frame", 1, read_camera,
+     [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const Watching watching(port, request.camera);
+       SteeredCamera& camera = port->cameras[request.camera];
+       const ExposedFrame frame = co_await camera.next_frame();
+       co_return SteeredFrame{frame, camera.is_settled(frame)};
+     },
+     Touches::kCamera},
+    {"adjust_frame", 2, read_control, controlled<&SteeredCamera::adjust_frame>},
+    {"insert_frame", 2, read_control, controlled<&SteeredCamera::insert_frame>},
+    {"frame_length", 2, read_control, controlled<&SteeredCamera::set_frame_length>},
+    {"start_at", 2, read_control, [](HostRequest request, SharedPort port) -> Task<HostAnswer> {
+       const bool is_taken =
+           co_await port->cameras[request.camera].start_at(HostTime(ns_of(request)));
+       co_return is_taken;
+     }}};
+
+// What host and stage refuse.
+void check_allowed(const HostRequest& request, const HostPort& port) {
+  const Touches touches = request.operation->touches;
+  if (port.steers() && (touches == Touches::kClock || touches == Touches::kCardsClock)) {
+    throw py::value_error("a capture_alignment sets no clock; that is the part of host_sync");
+  }
+  const bool is_on_card = touches == Touches::kCard || touches == Touches::kCardsClock;
+  if (is_on_card && port.get().hardware_clock() == nullptr) {
+    throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
+  }
+  if (touches == Touches::kChannel && port.receiving.contains({request.peer, request.transport})) {
+    throw py::value_error("another coroutine of this host waits on this channel");
+  }
+  if (touches == Touches::kCamera && port.watching.contains(request.camera)) {
+    throw py::value_error("another coroutine waits for a frame of this camera");
+  }
 }
 
 }  // namespace
 
-Task<HostAnswer> answered(HostRequest request, std::shared_ptr<HostPort> port) {
-  Host& host = *port->host;
-  const Nanoseconds ns(request.ns);
-  switch (request.operation) {
-    case HostOperation::kNow: {
-      const HostTime now = co_await host.clock().now();
-      co_return nanoseconds_of(now);
-    }
-    case HostOperation::kSet:
-      co_await host.clock().set(HostTime(ns));
-      break;
-    case HostOperation::kStep: {
-      const HostTime now = co_await host.clock().now();
-      co_await host.clock().set(now + ns);
-      break;
-    }
-    case HostOperation::kAdjustFrequency:
-      co_await host.clock().adjust_frequency(request.ppb);
-      break;
-    case HostOperation::kSlew:
-      co_await host.clock().slew(ns, request.ppb);
-      break;
-    case HostOperation::kSleepFor:
-      co_await host.sleep_for(ns);
-      co_return std::monostate{};
-    case HostOperation::kSleepUntil:
-      co_await host.sleep_until(HostTime(ns));
-      co_return std::monostate{};
-    case HostOperation::kCrossStamp: {
-      const CrossStamp stamp = co_await host.hardware_clock()->cross_stamp();
-      co_return stamp;
-    }
-    case HostOperation::kStepCard:
-      co_await host.hardware_clock()->step(ns);
-      co_return std::monostate{};
-    case HostOperation::kAdjustCard:
-      co_await host.hardware_clock()->adjust_frequency(request.ppb);
-      co_return std::monostate{};
-    case HostOperation::kNextFrame:
-    case HostOperation::kAdjustFrame:
-    case HostOperation::kInsertFrame:
-    case HostOperation::kFrameLength:
-    case HostOperation::kStartAt: {
-      HostAnswer answer = co_await steered(std::move(request), std::move(port));
-      co_return answer;
-    }
-    default: {
-      HostAnswer answer = co_await messaged(std::move(request), std::move(port));
-      co_return answer;
-    }
+HostRequest host_request(const py::handle& request, const HostPort& port) {
+  const bool is_request = py::isinstance<py::tuple>(request) && py::len(request) > 0 &&
+                          py::isinstance<py::str>(request[py::int_(0)]);
+  const auto tuple = is_request ? py::reinterpret_borrow<py::tuple>(request) : py::tuple(0);
+  const std::string name = is_request ? tuple[0].cast<std::string>() : "";
+  const auto* const found = std::ranges::find_if(
+      kOperations, [&name](const HostOperation& operation) { return name == operation.name; });
+  if (found == std::end(kOperations) || tuple.size() != found->arguments + 1) {
+    throw py::type_error(
+        "awaits something that is no operation of its host; asyncio does not run here: "
+        "await host.sleep_for(), host.clock.now(), host.channel(peer).receive() and the like");
   }
-  // The clock has been adjusted for the first time: from now on it counts as synchronised.
-  if (host.id() != 0) port->outcome.synchronised(port->exchanges);
-  co_return std::monostate{};
+  HostRequest made{.operation = found};
+  found->read(tuple, port, made);
+  check_allowed(made, port);
+  return made;
+}
+
+Task<HostAnswer> answered(HostRequest request, SharedPort port) {
+  return request.operation->done(std::move(request), std::move(port));
 }
 
 py::object python_value(const HostAnswer& answer) {

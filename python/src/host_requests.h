@@ -52,31 +52,12 @@ struct HostPort {
   std::set<std::uint32_t> watching{};  // cameras, by their place; likewise
 };
 
-enum class HostOperation : std::uint8_t {
-  kNow,
-  kSet,
-  kStep,
-  kAdjustFrequency,
-  kSlew,
-  kSleepFor,
-  kSleepUntil,
-  kSend,
-  kReceive,
-  kExchange,
-  kTransmitStamp,
-  kHardwareTransmitStamp,
-  kCrossStamp,
-  kStepCard,
-  kAdjustCard,
-  kNextFrame,
-  kAdjustFrame,
-  kInsertFrame,
-  kFrameLength,
-  kStartAt,
-};
+using SharedPort = std::shared_ptr<HostPort>;
+
+struct HostOperation;  // host_requests.cc has a table of them
 
 struct HostRequest {
-  HostOperation operation = HostOperation::kNow;
+  const HostOperation* operation = nullptr;
   std::int64_t ns = 0;  // a time, an offset, an interval, a length or a timeout
   double ppb = 0;
   PeerId peer = 0;
@@ -107,7 +88,7 @@ using HostAnswer = std::variant<std::monostate, std::int64_t, bool, ReceivedMess
 
 // Throws py::error_already_set or std::exception for a request that is none.
 HostRequest host_request(const py::handle& request, const HostPort& port);
-Task<HostAnswer> answered(HostRequest request, std::shared_ptr<HostPort> port);
+Task<HostAnswer> answered(HostRequest request, SharedPort port);
 py::object python_value(const HostAnswer& answer);
 
 // The other end of kExchange: answers the questions of a client with the own clock's times, until

@@ -27,7 +27,6 @@
 namespace simbench::python {
 
 using AlgorithmDefinition = std::shared_ptr<const PythonAlgorithm>;
-using SharedPort = std::shared_ptr<HostPort>;
 
 // The port has no host once the coroutine that has it has ended.
 class PortOfRun {

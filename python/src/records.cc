@@ -37,43 +37,35 @@ std::array<PyMemberDef, 5> frame_members = {
     whole("sensor_ns", offsetof(FrameRecordObject, sensor_ns), "the camera's own stamp, unwrapped"),
     PyMemberDef{}};
 
-// For tests of an algorithm by itself.
-PyObject* new_sample(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
-  static std::array<const char*, 5> names = {"sensor_ns", "arrival_ns", "arrival_steady_ns",
-                                             "exposure_us", nullptr};
-  SampleRecord values{};
-  if (PyArg_ParseTupleAndKeywords(arguments, keywords, "LL|LI", const_cast<char**>(names.data()),
-                                  &values.sensor_ns, &values.arrival_ns, &values.arrival_steady_ns,
-                                  &values.exposure_us) == 0) {
+// For tests of an algorithm by itself. `places`: the record's members, by their names.
+template <class Record, class... Members>
+PyObject* made_record(PyTypeObject* type, PyObject* arguments, PyObject* keywords,
+                      const char* format, std::array<const char*, sizeof...(Members) + 1> names,
+                      Members Record::*... places) {
+  Record values{};
+  if (PyArg_ParseTupleAndKeywords(arguments, keywords, format, const_cast<char**>(names.data()),
+                                  &(values.*places)...) == 0) {
     return nullptr;
   }
   PyObject* const object = type->tp_alloc(type, 0);
   if (object == nullptr) return nullptr;
-  auto& record = *reinterpret_cast<SampleRecord*>(object);
-  record.sensor_ns = values.sensor_ns;
-  record.arrival_ns = values.arrival_ns;
-  record.arrival_steady_ns = values.arrival_steady_ns;
-  record.exposure_us = values.exposure_us;
+  auto& record = *reinterpret_cast<Record*>(object);
+  ((record.*places = values.*places), ...);
   return object;
 }
 
+PyObject* new_sample(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
+  return made_record(type, arguments, keywords, "LL|LI",
+                     {"sensor_ns", "arrival_ns", "arrival_steady_ns", "exposure_us", nullptr},
+                     &SampleRecord::sensor_ns, &SampleRecord::arrival_ns,
+                     &SampleRecord::arrival_steady_ns, &SampleRecord::exposure_us);
+}
+
 PyObject* new_frame(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
-  static std::array<const char*, 5> names = {"source", "stamp_ns", "arrival_ns", "sensor_ns",
-                                             nullptr};
-  FrameRecordObject values{};
-  if (PyArg_ParseTupleAndKeywords(arguments, keywords, "IL|LL", const_cast<char**>(names.data()),
-                                  &values.source, &values.stamp_ns, &values.arrival_ns,
-                                  &values.sensor_ns) == 0) {
-    return nullptr;
-  }
-  PyObject* const object = type->tp_alloc(type, 0);
-  if (object == nullptr) return nullptr;
-  auto& record = *reinterpret_cast<FrameRecordObject*>(object);
-  record.source = values.source;
-  record.stamp_ns = values.stamp_ns;
-  record.arrival_ns = values.arrival_ns;
-  record.sensor_ns = values.sensor_ns;
-  return object;
+  return made_record(type, arguments, keywords, "IL|LL",
+                     {"source", "stamp_ns", "arrival_ns", "sensor_ns", nullptr},
+                     &FrameRecordObject::source, &FrameRecordObject::stamp_ns,
+                     &FrameRecordObject::arrival_ns, &FrameRecordObject::sensor_ns);
 }
 
 PyObject* show_sample(PyObject* object) {

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include "app/answer.h"
 #include "app/interrupt.h"
@@ -15,10 +18,9 @@
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/run_detail.h"
 #include "python/src/bindings.h"
-#include "python/src/frames.h"
+#include "python/src/rows.h"
 #include "python/src/run.h"
 #include "python/src/work.h"
-#include "recording/version.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/comparison/comparison.h"
 #include "reports/page/overview.h"
@@ -38,22 +40,12 @@ using evaluation::Results;
 using scenarios::InputError;
 using scenarios::Scenario;
 
-std::vector<scenarios::Override> overrides(const Sets& sets) {
-  std::vector<scenarios::Override> all;
-  all.reserve(sets.size());
-  for (const auto& [pointer, value] : sets) all.push_back({pointer, value});
-  return all;
-}
-
 std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_progress) {
   auto run = std::make_shared<Run>();
   run->provenance.emplace();
   run->provenance->command = request.command;
   run->provenance->started = std::chrono::system_clock::now();
-  run->scenario = scenarios::load_scenario(
-      request.scenario,
-      evaluation::with_ad_hoc_pipelines(request.scenario, overrides(request.sets),
-                                        request.pipelines, evaluation::AdHoc::kHostSyncToo));
+  run->scenario = load_scenario(request);
   const Scenario& scenario = *run->scenario;
   evaluation::check_pipelines(scenario);
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
@@ -69,8 +61,6 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_pr
   });
   run->provenance->finished = std::chrono::system_clock::now();
   run->archive.path = scenario.name;
-  run->archive.version = version();
-  run->archive.commit = commit();
   run->archive.scenario_json = scenario.resolved_json();
   run->notes = scenarios::warnings(scenario);
   const std::vector<std::string>& more = run->results().warnings;
@@ -103,8 +93,6 @@ std::shared_ptr<Run> score_recording(const std::string& folder,
     return recorded.evaluate(chosen, false, progress);
   });
   run->archive.path = folder;
-  run->archive.version = version();
-  run->archive.commit = commit();
   run->archive.scenario_json = recorded.scenario().resolved_json();
   for (const auto& more : {run->results().warnings, app::capture_notes(run->results())}) {
     run->notes.insert(run->notes.end(), more.begin(), more.end());
@@ -221,6 +209,77 @@ void check_same(const Run& run, const evaluation::RunDetail& detail) {
       run.archive.commit));
 }
 
+// Every frame of a run as a row: stamps, truth, errors.
+struct FrameRow {
+  std::int64_t pulse = -1;
+  std::uint32_t camera = 0;
+  std::uint32_t host = 0;
+  std::uint32_t counter = 0;
+  bool evaluated = false;
+  bool in_warm_up = false;
+  double sensor_ms = 0;
+  double frame_ms = 0;
+  double backend_ms = 0;
+  double arrival_ms = 0;
+  double global_ms = 0;
+  double reference_ms = 0;
+  double error_ms = 0;
+  double exposure_start_ms = 0;
+  double exposure_end_ms = 0;
+};
+
+std::vector<RowField> frame_fields() {
+  return {{"camera", "<u4", offsetof(FrameRow, camera)},
+          {"host", "<u4", offsetof(FrameRow, host)},
+          {"counter", "<u4", offsetof(FrameRow, counter)},
+          {"pulse", "<i8", offsetof(FrameRow, pulse)},
+          {"evaluated", "?", offsetof(FrameRow, evaluated)},
+          {"in_warm_up", "?", offsetof(FrameRow, in_warm_up)},
+          {"sensor_ms", "<f8", offsetof(FrameRow, sensor_ms)},
+          {"frame_ms", "<f8", offsetof(FrameRow, frame_ms)},
+          {"backend_ms", "<f8", offsetof(FrameRow, backend_ms)},
+          {"arrival_ms", "<f8", offsetof(FrameRow, arrival_ms)},
+          {"global_ms", "<f8", offsetof(FrameRow, global_ms)},
+          {"reference_ms", "<f8", offsetof(FrameRow, reference_ms)},
+          {"error_ms", "<f8", offsetof(FrameRow, error_ms)},
+          {"exposure_start_ms", "<f8", offsetof(FrameRow, exposure_start_ms)},
+          {"exposure_end_ms", "<f8", offsetof(FrameRow, exposure_end_ms)}};
+}
+
+FrameRow row_of(const evaluation::FrameDetail& frame, std::uint32_t camera, std::uint32_t host) {
+  return {.pulse = frame.pulse,
+          .camera = camera,
+          .host = host,
+          .counter = frame.counter,
+          .evaluated = frame.evaluated,
+          .in_warm_up = frame.in_warm_up,
+          .sensor_ms = frame.sensor_ms,
+          .frame_ms = frame.frame_ms,
+          .backend_ms = frame.backend_ms,
+          .arrival_ms = frame.arrival_ms,
+          .global_ms = frame.global_ms,
+          .reference_ms = frame.reference_ms,
+          .error_ms = frame.global_ms - frame.reference_ms,
+          .exposure_start_ms = frame.exposure_start_ms,
+          .exposure_end_ms = frame.exposure_end_ms};
+}
+
+// Takes the frames of the detail, camera by camera: at no time is all of it there twice.
+Rows frame_rows(evaluation::RunDetail detail) {
+  std::size_t count = 0;
+  for (const auto& camera : detail.cameras) count += camera.frames.size();
+  std::vector<FrameRow> rows;
+  rows.reserve(count);
+  for (std::uint32_t camera = 0; camera < detail.cameras.size(); ++camera) {
+    const std::vector<evaluation::FrameDetail> frames =
+        std::exchange(detail.cameras[camera].frames, {});
+    for (const auto& frame : frames) {
+      rows.push_back(row_of(frame, camera, detail.cameras[camera].host));
+    }
+  }
+  return Rows(std::move(rows), frame_fields());
+}
+
 // With the number of the rig's cameras, of which the first are there.
 py::tuple frames(const Run& run, const std::string& pipeline, std::uint64_t seed,
                  const py::object& on_progress) {
@@ -314,6 +373,16 @@ void bind_comparison(py::module_& module) {
 }
 
 }  // namespace
+
+Scenario load_scenario(const RunRequest& request) {
+  std::vector<scenarios::Override> overrides;
+  for (const auto& [pointer, value] : request.sets) overrides.push_back({pointer, value});
+  return scenarios::load_scenario(
+      request.scenario,
+      evaluation::with_ad_hoc_pipelines(request.scenario, std::move(overrides), request.pipelines,
+                                        evaluation::AdHoc::kHostSyncToo));
+}
+
 }  // namespace simbench::python
 
 void bind_results(pybind11::module_& module) {

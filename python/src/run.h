@@ -30,6 +30,9 @@ struct RunRequest {
   std::vector<std::string> command;  // for the archive
 };
 
+// With the pipelines that it states by their algorithms.
+scenarios::Scenario load_scenario(const RunRequest& request);
+
 struct Run {
   reports::Archive archive{};                       // with the results
   std::optional<scenarios::Scenario> scenario{};    // nothing: unknown, of a results.json alone

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "recording/collected.h"
 #include "recording/counted.h"
-#include "recording/version.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
@@ -20,8 +20,7 @@ using evaluation::Requirement;
 using evaluation::RigOption;
 
 std::string requirements_text(const Advice& advice) {
-  std::vector<std::string> texts;
-  for (const Requirement& each : advice.request.requirements) texts.push_back(each.text);
+  const std::vector<std::string> texts = collected(advice.request.requirements, &Requirement::text);
   return fmt::format("{}", fmt::join(texts, " and "));
 }
 
@@ -223,20 +222,18 @@ Document advice_document(const Advice& advice) {
 }
 
 Json advice_json(const Advice& advice) {
-  Json root = {
-      {"schema_version", 1},
-      {"version", version()},
-      {"commit", commit()},
-      {"answer", advice_answer(advice)},
-      {"cameras", advice.request.rig.cameras},
-      {"rate_hz", advice.request.rig.rate_hz},
-      {"requirements", Json::array()},
-      {"seeds",
-       {{"first", advice.options_of_run.first_seed}, {"count", advice.options_of_run.seeds}}},
-      {"recommended", nullptr},
-      {"fails_first", nullptr},
-      {"rare", nullptr},
-      {"options", Json::array()}};
+  Json root = new_document();
+  root.update(
+      {{"answer", advice_answer(advice)},
+       {"cameras", advice.request.rig.cameras},
+       {"rate_hz", advice.request.rig.rate_hz},
+       {"requirements", Json::array()},
+       {"seeds",
+        {{"first", advice.options_of_run.first_seed}, {"count", advice.options_of_run.seeds}}},
+       {"recommended", nullptr},
+       {"fails_first", nullptr},
+       {"rare", nullptr},
+       {"options", Json::array()}});
   for (const Requirement& each : advice.request.requirements) {
     root["requirements"].push_back(each.text);
   }

@@ -3,7 +3,7 @@
 //
 // JSON: {"schema_version", "version", "commit", "answer", "cameras", "rate_hz", "requirements":
 // [text], "seeds", "recommended": a place in options or null, "fails_first": {"metric", "stage",
-// "share"} or null, "rare": null or as in rare_report.h, "options": [{"rig", "hosts",
+// "share"} or null, "rare": null or as of rare_json(), "options": [{"rig", "hosts",
 // "cameras_per_host", "parts": [name], "price_low_eur", "price_high_eur", "settled", "pipelines":
 // [{"pipeline", "met", "seeds", "probability", "low", "high", "margin", "frames_dropped",
 // "medians": {id: value}}]}]}; the pipelines from the best on.
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "evaluation/advice/advice.h"
+#include "evaluation/rare/splitting.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
 
@@ -28,6 +29,20 @@ Json advice_json(const evaluation::Advice& advice);
 
 // "EUR" with a number for the size of a price: "low (60-180 EUR)".
 std::string price_class(const scenarios::PriceRange& price);
+
+// How often a recommended rig goes wrong (app/rare_sets.h, evaluation/rare) as a block and as JSON:
+// [{"event", "bound_ms", "probability", "low", "high", "per_day", "per_day_low", "per_day_high",
+// "is_below", "runs", "repeats"}]; what does not exist is null.
+struct RareResult {
+  std::string event;  // "spread above 0.1 ms"
+  double bound_ms = 0;
+  double sets_per_day = 0;
+  evaluation::RareEstimate estimate{};
+};
+
+// The heading names rig and pipeline.
+Block rare_block(const std::string& heading, const std::vector<RareResult>& results);
+Json rare_json(const std::vector<RareResult>& results);
 
 }  // namespace simbench::reports
 

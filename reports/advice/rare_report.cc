@@ -1,9 +1,8 @@
-#include "reports/advice/rare_report.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "reports/advice/advice_report.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {

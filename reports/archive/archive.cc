@@ -5,20 +5,19 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 
 #include "algorithms/ports/stage.h"
-#include "evaluation/clock_run/clock_curves.h"
+#include "evaluation/clock_run/clock_score.h"
+#include "recording/collected.h"
 #include "recording/line_reader.h"
+#include "recording/number_in.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
-#include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
-#include "reports/results/published_figures_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/program_name.h"
 #include "scenarios/document.h"
@@ -57,9 +56,7 @@ std::string shell_quoted(const std::string& word) {
 }  // namespace
 
 std::string shell_line(const std::vector<std::string>& words) {
-  std::vector<std::string> all;
-  all.reserve(words.size());
-  for (const std::string& word : words) all.push_back(shell_quoted(word));
+  const std::vector<std::string> all = collected(words, shell_quoted);
   return fmt::format("{}", fmt::join(all, " "));
 }
 
@@ -80,14 +77,26 @@ std::string manifest_json(const Provenance& provenance, const Json& more) {
   return file_text(manifest);
 }
 
-void write_archive(OutputFolder& output, const evaluation::Results& results,
-                   const scenarios::Scenario& scenario, const Provenance& provenance) {
-  Json more = {{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
-               {"pipelines", Json::array()}};
+std::string manifest_json(const Provenance& provenance, const evaluation::Results& results,
+                          const scenarios::Scenario& scenario) {
+  const bool is_of_clocks = results.kind == evaluation::ResultKind::kClockRuns;
+  Json more;
+  if (is_of_clocks) more["kind"] = kClockRunsName;
+  more["seeds"] = {{"first", results.first_seed}, {"count", results.seed_count}};
+  if (is_of_clocks) {
+    more["duration_s"] = results.clock_period.duration_s;
+    more["from_s"] = results.clock_period.from_s;
+  }
+  more["pipelines"] = Json::array();
+  for (const evaluation::Row& row : results.rows) more["pipelines"].push_back(row.pipeline);
   state_derivation(results.derivation, more);
   more["scenario"] = Json::parse(scenario.resolved_json());
-  for (const evaluation::Row& row : results.rows) more["pipelines"].push_back(row.pipeline);
-  output.file("manifest.json") << manifest_json(provenance, more);
+  return manifest_json(provenance, more);
+}
+
+void write_archive(OutputFolder& output, const evaluation::Results& results,
+                   const scenarios::Scenario& scenario, const Provenance& provenance) {
+  output.file("manifest.json") << manifest_json(provenance, results, scenario);
   output.file("results.json") << json(results);
   write_frames_csv(results, output.file("frames.csv"));
   write_hosts_csv(results, output.file("hosts.csv"));
@@ -363,13 +372,8 @@ class CsvFile {
   std::string_view text(std::size_t cell) const { return cells_[cell]; }
   template <class Number>
   Number number(std::size_t cell) const {
-    const std::string_view text = cells_[cell];
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      fail(fmt::format("found '{}', allowed: a number", scenarios::shown_text(text)));
-    }
-    return value;
+    if (const std::optional<Number> value = number_in<Number>(cells_[cell])) return *value;
+    fail(fmt::format("found '{}', allowed: a number", scenarios::shown_text(cells_[cell])));
   }
   // An empty cell is NaN.
   double value(std::size_t cell) const {

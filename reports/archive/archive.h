@@ -1,6 +1,6 @@
 // The result archive that --output writes, with all that is needed to read, check and repeat a run.
 //
-//   manifest.json   the fully resolved scenario, its changes (reports/results/derivation_json.h),
+//   manifest.json   the fully resolved scenario, its changes (reports/results/json.h),
 //                   seeds, version, commit, command, start and end
 //   results.json    see reports/results/json.h
 //   frames.csv      spread and deviation of every evaluated pulse
@@ -25,6 +25,7 @@
 
 #include "evaluation/clock_run/clock_score.h"
 #include "evaluation/scoring/results.h"
+#include "recording/version.h"
 #include "reports/text/json_node.h"
 #include "reports/text/output_file.h"
 #include "scenarios/scenario.h"
@@ -46,6 +47,9 @@ std::string simbench_line(std::vector<std::string> command);
 // Returns a manifest: schema_version, program, version, commit, command, started, finished (ISO
 // 8601, UTC), and the members of `more`.
 std::string manifest_json(const Provenance& provenance, const Json& more);
+// That of results: of what runs, seeds, pipelines and scenario.
+std::string manifest_json(const Provenance& provenance, const evaluation::Results& results,
+                          const scenarios::Scenario& scenario);
 
 // Writes and publishes. After an OutputError nothing is left.
 void write_archive(OutputFolder& output, const evaluation::Results& results,
@@ -58,9 +62,9 @@ evaluation::ResultKind read_result_kind(const JsonNode& root, const char* member
 evaluation::ClockPeriod read_clock_period(const JsonNode& root, evaluation::ResultKind kind);
 
 struct Archive {
-  std::string path;  // as the user stated it
-  std::string version;
-  std::string commit;
+  std::string path;                                        // as the user stated it
+  std::string version = std::string(simbench::version());  // of the program that made it
+  std::string commit = std::string(simbench::commit());
   std::vector<std::string> command{};  // from here to scenario_json: only with a manifest
   std::string started{};
   std::string finished{};

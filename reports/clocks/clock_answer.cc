@@ -1,4 +1,3 @@
-#include "reports/clocks/clock_answer.h"
 
 #include <fmt/format.h>
 

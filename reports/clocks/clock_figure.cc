@@ -2,8 +2,7 @@
 #include <string>
 #include <utility>
 
-#include "evaluation/clock_run/clock_curves.h"
-#include "recording/version.h"
+#include "evaluation/clock_run/clock_score.h"
 #include "reports/clocks/clock_report.h"
 
 namespace simbench::reports {
@@ -31,12 +30,10 @@ std::vector<Mask> masks() {
 
 FigureSeries curve_series(const std::string& label, int colour,
                           const std::vector<evaluation::StabilityPoint>& points) {
-  FigureSeries series{
-      .label = label, .mark = Mark::kMarkedLine, .x = {}, .y = {}, .colour = colour};
+  FigureSeries series{.label = label, .mark = Mark::kMarkedLine, .colour = colour};
   for (const evaluation::StabilityPoint& point : points) {
     if (point.value <= 0) continue;  // of an oracle; a logarithmic axis has no place for it
-    series.x.push_back(point.tau_s);
-    series.y.push_back(point.value);
+    series.add(point.tau_s, point.value);
   }
   return series;
 }
@@ -45,11 +42,9 @@ void add_masks(const evaluation::ClockCurve& curve, double first_tau_s, FigurePa
   int colour = static_cast<int>(panel.series.size());
   for (const Mask& mask : masks()) {
     if (mask.curve != std::string(curve.id)) continue;
-    FigureSeries series{
-        .label = mask.label, .mark = Mark::kLine, .x = {}, .y = {}, .colour = colour++};
+    FigureSeries series{.label = mask.label, .mark = Mark::kLine, .colour = colour++};
     for (const auto& [tau_s, ns] : mask.points) {
-      series.x.push_back(std::max(tau_s, first_tau_s));
-      series.y.push_back(ns * 1e-6);
+      series.add(std::max(tau_s, first_tau_s), ns * 1e-6);
     }
     panel.series.push_back(std::move(series));
   }
@@ -70,9 +65,7 @@ Figure clock_figure(const evaluation::ClockResults& results) {
                    .derivation = of.derivation,
                    .pipeline = of.rows.size() == 1 ? of.rows.front().pipeline : "",
                    .first_seed = of.first_seed,
-                   .seeds = of.seed_count,
-                   .version = std::string(version()),
-                   .commit = std::string(commit())};
+                   .seeds = of.seed_count};
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
     if (!curve.in_text) continue;
     FigurePanel panel{.title = curve.title, .x_label = "tau, s", .y_label = curve.axis};

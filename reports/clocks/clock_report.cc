@@ -4,20 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
-#include "evaluation/clock_run/clock_curves.h"
+#include "evaluation/clock_run/clock_score.h"
 #include "recording/version.h"
-#include "reports/clocks/clock_answer.h"
 #include "reports/results/csv.h"
-#include "reports/results/derivation_json.h"
-#include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/results/metric_columns.h"
-#include "reports/results/program_gap.h"
 #include "reports/results/results_document.h"
+#include "reports/stability/stability_report.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
@@ -122,12 +119,8 @@ Document clock_document(const ClockResults& results, const std::string& summary)
   document.head.insert(document.head.end(), head.begin(), head.end());
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
-  if (std::optional<Block> gap = program_gap_block(results.results)) {
-    blocks.push_back(std::move(*gap));
-  }
-  if (const std::vector<std::string> notes = note_lines(results.results); !notes.empty()) {
-    blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
-  }
+  add(program_gap_block(results.results), blocks);
+  add(notes_block(results.results), blocks);
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
     if (!curve.in_text) continue;
     blocks.push_back({.heading = curve.title, .table = over_tau_table(results, curve)});
@@ -143,14 +136,6 @@ Document clock_document(const ClockResults& results, const std::string& summary)
 
 namespace {
 
-Json curve_points_json(const std::vector<evaluation::StabilityPoint>& points) {
-  Json all = Json::array();
-  for (const evaluation::StabilityPoint& point : points) {
-    all.push_back({{"tau_s", point.tau_s}, {"value", point.value}, {"terms", point.terms}});
-  }
-  return all;
-}
-
 Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
   Json all = {{"pipeline", row.pipeline},
               {"host_sync", row.host_sync},
@@ -165,7 +150,7 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
   if (!row.model.empty()) all["model"] = row.model;
   all["notes"] = row.notes;
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves())
-    all[curve.id] = curve_points_json(curves.*curve.points);
+    all[curve.id] = points_json(curves.*curve.points);
   all["max_te_ms"] = largest(row.max_te_ms.values);
   all["rms_te_ms"] = rms(row.rms_te_ms.values);
   all["constant_te_ms"] = largest(row.constant_te_ms.values);
@@ -206,20 +191,18 @@ std::string clock_json(const ClockResults& results) {
 }
 
 std::string clock_csv(const ClockResults& results) {
-  const bool changed = !results.results.derivation.changes.empty();
-  const std::string changes =
-      changed ? "," + csv_cell(scenarios::changed_text(results.results.derivation)) : "";
-  std::string text = fmt::format("pipeline,measure,tau_s,value{}\n", changed ? ",changed" : "");
+  const LineEnds ends(results.results.derivation);
+  std::string text = "pipeline,measure,tau_s,value" + ends.header;
   for (std::size_t i = 0; i < results.results.rows.size(); ++i) {
     const Row& row = results.results.rows[i];
     const std::string name = csv_cell(row.pipeline);
     for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
-      text += fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(metric.value(row)), changes);
+      text += fmt::format("{},{},,{}{}", name, metric.id, csv_cell(metric.value(row)), ends.line);
     }
     for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
       for (const evaluation::StabilityPoint& point : results.curves[i].*curve.points) {
-        text += fmt::format("{},{},{},{}{}\n", name, curve.id, csv_cell(point.tau_s),
-                            csv_cell(point.value), changes);
+        text += fmt::format("{},{},{},{}{}", name, curve.id, csv_cell(point.tau_s),
+                            csv_cell(point.value), ends.line);
       }
     }
   }
@@ -245,16 +228,7 @@ std::vector<std::string> clock_archive_files() { return {"curves.csv", "series.c
 
 void write_clock_archive(OutputFolder& output, const ClockResults& results,
                          const scenarios::Scenario& scenario, const Provenance& provenance) {
-  const evaluation::Results& of = results.results;
-  Json more = {{"kind", kClockRunsName},
-               {"seeds", {{"first", of.first_seed}, {"count", of.seed_count}}},
-               {"duration_s", of.clock_period.duration_s},
-               {"from_s", of.clock_period.from_s},
-               {"pipelines", Json::array()}};
-  state_derivation(of.derivation, more);
-  more["scenario"] = Json::parse(scenario.resolved_json());
-  for (const Row& row : of.rows) more["pipelines"].push_back(row.pipeline);
-  output.file("manifest.json") << manifest_json(provenance, more);
+  output.file("manifest.json") << manifest_json(provenance, results.results, scenario);
   output.file("results.json") << clock_json(results);
   output.file("curves.csv") << clock_csv(results);
   write_series_csv(results, output.file("series.csv"));

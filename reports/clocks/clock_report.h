@@ -3,7 +3,7 @@
 // JSON, schema_version 1; members are only ever added; null: the value does not exist.
 //
 //   {"schema_version": 1, "kind": "clocks", "version", "commit", "scenario",
-//    "based_on", "changed", "published_left_out" (reports/results/derivation_json.h),
+//    "based_on", "changed", "published_left_out" (reports/results/json.h),
 //    "seeds": {"first", "count"}, "duration_s", "from_s", "interval_s": of the readings,
 //    "rows": [{"pipeline", "host_sync", "device_time", "gathering",
 //              "clock_spread_ms": {"mean", "median", "p95", "max": in time, of that the mean over
@@ -31,6 +31,7 @@
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 #include "reports/text/output_file.h"
 #include "scenarios/scenario.h"
@@ -40,7 +41,13 @@ namespace simbench::reports {
 // What an archive holds: without the readings.
 evaluation::ClockResults clock_results_of(const Archive& archive);
 
-// Its head begins with the answer (clock_answer.h).
+// Which host_sync keeps the hosts' clocks closest together and by how much, from when on they are
+// in sync, whether the rest is constant or moves, what happens without the master, what it costs in
+// packets, and what is uncertain. Ranked by the mean spread in time (evaluation/answer/answer.h).
+// `results`: of ResultKind::kClockRuns.
+AnswerText clock_answer(const evaluation::Results& results);
+
+// Its head begins with the answer.
 Document clock_document(const evaluation::ClockResults& results, const std::string& summary);
 
 std::string clock_json(const evaluation::ClockResults& results);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "recording/version.h"
+#include "recording/collected.h"
 #include "reports/comparison/comparison_scenarios.h"
-#include "reports/results/csv.h"
-#include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 
@@ -18,9 +18,7 @@ using evaluation::Row;
 using scenarios::InputError;
 
 std::vector<std::string> names_of(const Archive& archive) {
-  std::vector<std::string> names;
-  for (const Row& row : archive.results.rows) names.push_back(row.pipeline);
-  return names;
+  return collected(archive.results.rows, &Row::pipeline);
 }
 
 const Row& row_of(const Archive& archive, const std::string& name, const char* option) {
@@ -290,10 +288,8 @@ VerdictCount count_verdicts(const Comparison& comparison) {
 }
 
 std::string comparison_json(const Comparison& comparison) {
-  Json root = {{"schema_version", 1},
-               {"version", version()},
-               {"commit", commit()},
-               {"scenario", comparison.scenario}};
+  Json root = new_document();
+  root["scenario"] = comparison.scenario;
   state_derivation(comparison.derivation, root);
   root.update({{"a", comparison.a},
                {"b", comparison.b},

@@ -63,8 +63,8 @@ struct VerdictCount {
   std::size_t most_pairs = 0;    // of any of them
   std::size_t fewest_pairs = 0;  // with which one of so many can be better or worse
 
-  // Of verdicts better and worse, if nothing differs: of Holm's first step, and of tests at 5 %
-  // each.
+  // How many verdicts better and worse are false, if nothing differs: of Holm's first step, and of
+  // tests at 5 % each.
   double expected_false() const { return tests > 0 ? evaluation::kFamilyError : 0; }
   double expected_false_uncorrected() const {
     return evaluation::kFamilyError * static_cast<double>(tests);

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "evaluation/statistics/paired.h"
+#include "recording/collected.h"
+#include "recording/counted.h"
 #include "reports/comparison/comparison_scenarios.h"
-#include "reports/text/number_text.h"
 #include "reports/text/program_name.h"
 #include "scenarios/loader.h"
 
@@ -221,8 +222,7 @@ void note_more(const Archive& result, const Baseline& baseline, GateReport& repo
 // as far as known), then the gate.
 std::string run_command(const Archive& result) {
   if (!result.command.empty()) return simbench_line(result.command);
-  std::vector<std::string> names;
-  for (const evaluation::Row& row : result.results.rows) names.push_back(row.pipeline);
+  const std::vector<std::string> names = collected(result.results.rows, &evaluation::Row::pipeline);
   const bool is_of_clocks = result.results.kind == evaluation::ResultKind::kClockRuns;
   return shell_line({program_name(), is_of_clocks ? "clocks" : "run", "--scenario",
                      result.results.scenario, "--first-seed",

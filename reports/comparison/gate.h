@@ -103,9 +103,6 @@ std::string gate_json(const GateReport& report);
 // read: testsuites, testsuite, testcase (classname, name, time), failure (message, text).
 std::string gate_junit(const GateReport& report);
 
-// Escapes text for XML 1.0; characters that XML cannot hold become question marks.
-std::string xml_text(std::string_view text);
-
 }  // namespace simbench::reports
 
 #endif  // SIMBENCH_REPORTS_COMPARISON_GATE_H_

@@ -3,16 +3,14 @@
 
 #include <cmath>
 
-#include "recording/version.h"
-#include "reports/comparison/comparison.h"
 #include "reports/comparison/gate.h"
-#include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
 #include "reports/text/block.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
-#include "scenarios/document.h"
 
 namespace simbench::reports {
 namespace {
@@ -195,12 +193,10 @@ Json check_json(const GateReport& report, const GateCheck& check) {
 }  // namespace
 
 std::string gate_json(const GateReport& report) {
-  Json root = {{"schema_version", 1},
-               {"version", version()},
-               {"commit", commit()},
-               {"passed", report.passed()},
-               {"mode", report.mode == GateMode::kExact ? "exact" : "statistical"},
-               {"scenario", report.scenario}};
+  Json root = new_document();
+  root["passed"] = report.passed();
+  root["mode"] = report.mode == GateMode::kExact ? "exact" : "statistical";
+  root["scenario"] = report.scenario;
   state_derivation(report.derivation, root);
   root.update({{"result", report.result_path},
                {"baseline",
@@ -234,26 +230,6 @@ std::string test_case(const GateReport& report, const std::string& pipeline,
 }
 
 }  // namespace
-
-std::string xml_text(std::string_view text) {
-  const std::string whole(text);
-  std::string escaped;
-  for (const char letter : scenarios::is_utf8(whole) ? whole : std::string(text.size(), '?')) {
-    const bool is_control = static_cast<unsigned char>(letter) < ' ' && letter != '\n';
-    if (letter == '&') {
-      escaped += "&amp;";
-    } else if (letter == '<') {
-      escaped += "&lt;";
-    } else if (letter == '>') {
-      escaped += "&gt;";
-    } else if (letter == '"') {
-      escaped += "&quot;";
-    } else {
-      escaped += is_control ? '?' : letter;
-    }
-  }
-  return escaped;
-}
 
 std::string gate_junit(const GateReport& report) {
   std::string cases;

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "recording/version.h"
 #include "scenarios/derivation.h"
 
 namespace simbench::reports {
@@ -27,12 +28,23 @@ enum class Mark : std::uint8_t { kPoints, kLine, kMarkedLine, kSteps, kBars };
 struct FigureSeries {
   std::string label;
   Mark mark = Mark::kPoints;
-  std::vector<double> x;  // ascending except for kPoints; for kBars: 0, 1, ... (categories)
-  std::vector<double> y;  // as long as x
-  int colour = 0;         // the same number for the same thing throughout a figure
+  std::vector<double> x{};  // ascending except for kPoints; for kBars: 0, 1, ... (categories)
+  std::vector<double> y{};  // as long as x
+  int colour = 0;           // the same number for the same thing throughout a figure
   // The 5-95 % band about y on paper and in CSV, as long as x; empty: none.
   std::vector<double> low{};
   std::vector<double> high{};
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  // With a band.
+  void add(double at, double value, double from, double to) {
+    add(at, value);
+    low.push_back(from);
+    high.push_back(to);
+  }
 };
 
 // A line across the panel, such as a published value.
@@ -87,8 +99,8 @@ struct FigureSource {
   std::string pipeline{};  // empty: the figure itself names several
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 0;
-  std::string version{};
-  std::string commit{};
+  std::string version = std::string(simbench::version());  // of the program that ran it
+  std::string commit = std::string(simbench::commit());
 };
 
 struct Figure {
@@ -133,7 +145,7 @@ const FigureEntry& figure_named(std::string_view name);
 //   panel,series,x,y
 //   Sensor stamp,camera 0,225,22.222
 //
-// Of a scenario whose world is changed, a fifth column "changed" has its changes.
+// A fifth column "changed" has the changes of a scenario whose world is changed.
 //
 // A gap has an empty y; on an axis of categories x is the category. A line such as a published
 // value is a series of one point without x (or y, if it is vertical), a shaded stretch one of two

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "recording/collected.h"
 #include "reports/figures/figure.h"
 #include "scenarios/loader.h"
 
@@ -61,8 +62,7 @@ const FigureEntry* find_figure(std::string_view name) {
 
 const FigureEntry& figure_named(std::string_view name) {
   if (const FigureEntry* entry = find_figure(name)) return *entry;
-  std::vector<std::string> known;
-  for (const FigureEntry& entry : figure_catalogue()) known.push_back(entry.id);
+  const std::vector<std::string> known = collected(figure_catalogue(), &FigureEntry::id);
   throw scenarios::InputError(
       fmt::format("figure: found '{}', allowed: {}, or the paper's numbers as fig8", name,
                   fmt::join(known, ", ")));

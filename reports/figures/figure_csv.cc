@@ -7,6 +7,7 @@
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure.h"
 #include "reports/results/csv.h"
+#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -60,10 +61,9 @@ std::string figure_csv(const Figure& figure) {
       }
     }
   }
-  const std::string changed = scenarios::changed_text(figure.source.derivation);
-  const std::string last = changed.empty() ? "\n" : fmt::format(",{}\n", csv_cell(changed));
-  std::string text = changed.empty() ? "panel,series,x,y\n" : "panel,series,x,y,changed\n";
-  for (const std::string& line : lines) text += line + last;
+  const LineEnds ends(figure.source.derivation);
+  std::string text = "panel,series,x,y" + ends.header;
+  for (const std::string& line : lines) text += line + ends.line;
   return text;
 }
 

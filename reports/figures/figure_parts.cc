@@ -60,18 +60,16 @@ FigureSeries thinned(FigureSeries series, std::size_t most) {
   // The first and the last point are additional to those of the buckets, each with a gap.
   const std::vector<std::size_t> kept =
       extremes(series.y, (most - kPointsOfABucket) / kPointsOfABucket);
-  FigureSeries thin = {.label = std::move(series.label), .mark = series.mark, .x = {}, .y = {}};
+  FigureSeries thin = {.label = std::move(series.label), .mark = series.mark};
   thin.colour = series.colour;
   std::size_t next = 0;  // the first unchecked index
   for (const std::size_t index : kept) {
     for (; next < index && !std::isnan(series.y[next]); ++next) {
     }
     if (next < index) {
-      thin.x.push_back(series.x[next]);
-      thin.y.push_back(series.y[next]);
+      thin.add(series.x[next], series.y[next]);
     }
-    thin.x.push_back(series.x[index]);
-    thin.y.push_back(series.y[index]);
+    thin.add(series.x[index], series.y[index]);
     next = index + 1;
   }
   return thin;
@@ -208,11 +206,9 @@ FigureSeries stamp_series(const RunDetail& run, std::size_t camera, double Frame
     const auto x = static_cast<double>(run.has_pulses ? frame.pulse : static_cast<std::int64_t>(i));
     const bool lost_before = i > 0 && of_camera.frames[i - 1].counter + 1 != frame.counter;
     if (lost_before && !made.x.empty()) {
-      made.x.push_back(x);
-      made.y.push_back(evaluation::kNan);
+      made.add(x, evaluation::kNan);
     }
-    made.x.push_back(x);
-    made.y.push_back(frame.*stamp - reference.of(frame));
+    made.add(x, frame.*stamp - reference.of(frame));
   }
   return thinned(std::move(made), kMostPoints);
 }

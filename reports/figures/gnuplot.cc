@@ -21,8 +21,7 @@
 #include <vector>
 
 #include "recording/temporary_folder.h"
-#include "reports/text/file_content.h"
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -114,8 +113,7 @@ FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std
     }
     FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
     for (const PulseScore& pulse : score->pulses) {
-      curve.x.push_back(static_cast<double>(pulse.pulse));
-      curve.y.push_back(pulse.*value);
+      curve.add(static_cast<double>(pulse.pulse), pulse.*value);
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
@@ -135,8 +133,7 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, const evaluation::Me
     FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
     if (values.size() == 1) values.push_back(values.front());  // all quantiles of a single seed
     for (std::size_t i = 0; i < values.size(); ++i) {
-      curve.x.push_back(100 * static_cast<double>(i) / static_cast<double>(values.size() - 1));
-      curve.y.push_back(values[i]);
+      curve.add(100 * static_cast<double>(i) / static_cast<double>(values.size() - 1), values[i]);
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
@@ -186,15 +183,13 @@ Figure order_figure(const std::vector<RowRef>& rows) {
         const double error = seed.host_errors_ms[host];
         if (std::isnan(error)) continue;
         by_host[host].push_back(std::abs(error));
-        points.x.push_back(static_cast<double>(host));
-        points.y.push_back(error);
+        points.add(static_cast<double>(host), error);
       }
     }
     FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
     for (std::size_t host = 1; host < by_host.size(); ++host) {
       if (by_host[host].empty()) continue;
-      curve.x.push_back(static_cast<double>(host));
-      curve.y.push_back(evaluation::median(by_host[host]));
+      curve.add(static_cast<double>(host), evaluation::median(by_host[host]));
     }
     if (curve.x.empty()) continue;
     medians.series.push_back(thinned(std::move(curve), kMostPoints));

@@ -42,8 +42,7 @@ FigurePanel clock_panel(const RunDetail& run, std::string title, double from_ms)
         series("host " + std::to_string(host), Mark::kLine, static_cast<int>(host));
     for (const ClockErrors& clocks : run.clocks) {
       if (clocks.at_ms < from_ms) continue;
-      curve.x.push_back(clocks.at_ms / 1000);
-      curve.y.push_back(clocks.errors_ms[host]);
+      curve.add(clocks.at_ms / 1000, clocks.errors_ms[host]);
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
@@ -166,8 +165,7 @@ FigureSeries unbroken(const FrameTimeline& timeline, std::size_t camera) {
     auto end = std::next(begin);
     while (end != buckets.end() && *end == *std::prev(end) + 1) ++end;
     if (!line.x.empty()) {
-      line.x.push_back(line.x.back());
-      line.y.push_back(evaluation::kNan);
+      line.add(line.x.back(), evaluation::kNan);
     }
     const double half = timeline.bucket / 2;
     line.x.insert(line.x.end(),
@@ -189,8 +187,7 @@ FigurePanel frames_panel(const RunDetail& run, const FrameTimeline& timeline) {
     FigureSeries marks = series(kLotNames[lot], Mark::kPoints, static_cast<int>(lot));
     for (std::size_t camera = 0; camera < timeline.cameras.size(); ++camera) {
       for (const std::int64_t bucket : timeline.cameras[camera][lot]) {
-        marks.x.push_back(timeline.middle(bucket));
-        marks.y.push_back(static_cast<double>(camera) + kBesideCamera.at(lot));
+        marks.add(timeline.middle(bucket), static_cast<double>(camera) + kBesideCamera.at(lot));
       }
     }
     if (!marks.x.empty()) made.series.push_back(std::move(marks));
@@ -214,8 +211,7 @@ FigurePanel sets_panel(const RunDetail& run) {
     FigureSeries marks =
         series(names[static_cast<std::size_t>(lot)], Mark::kPoints, static_cast<int>(lot));
     for (const auto& [x, y] : points) {
-      marks.x.push_back(x);
-      marks.y.push_back(y);
+      marks.add(x, y);
     }
     made.series.push_back(thinned(std::move(marks), kMostPoints));
   }
@@ -238,9 +234,8 @@ FigureSeries interval_series(const RunDetail& run, std::size_t camera, double Fr
     const FrameDetail& frame = of_camera.frames[i];
     const double x = frame_position(run, of_camera, i);
     if (before.in_warm_up || frame.in_warm_up || std::isnan(x)) continue;
-    made.x.push_back(x);
-    made.y.push_back(frame.counter == before.counter + 1 ? frame.*stamp - before.*stamp
-                                                         : evaluation::kNan);
+    made.add(x,
+             frame.counter == before.counter + 1 ? frame.*stamp - before.*stamp : evaluation::kNan);
   }
   return thinned(std::move(made), kMostPoints);
 }
@@ -253,8 +248,7 @@ FigureSeries raw_series(const RunDetail& run, std::size_t camera, double FrameDe
   for (std::size_t i = 0; i < of_camera.frames.size() && made.x.size() < kFramesOfStamps; ++i) {
     const double x = frame_position(run, of_camera, i);
     if (of_camera.frames[i].in_warm_up || std::isnan(x)) continue;
-    made.x.push_back(x);
-    made.y.push_back(of_camera.frames[i].*stamp);
+    made.add(x, of_camera.frames[i].*stamp);
   }
   return made;
 }
@@ -276,9 +270,8 @@ FigurePanel difference_panel(const RunDetail& run, const FigurePanel& stamps) {
     for (std::size_t i = 0; i < of_camera.x.size(); ++i) {
       const auto same = std::lower_bound(first.x.begin(), first.x.end(), of_camera.x[i]);
       if (same == first.x.end() || *same != of_camera.x[i]) continue;
-      difference.x.push_back(of_camera.x[i]);
-      difference.y.push_back(of_camera.y[i] -
-                             first.y[static_cast<std::size_t>(same - first.x.begin())]);
+      difference.add(of_camera.x[i],
+                     of_camera.y[i] - first.y[static_cast<std::size_t>(same - first.x.begin())]);
     }
     made.series.push_back(std::move(difference));
   }
@@ -316,10 +309,9 @@ FigureSeries first_intervals(const RunDetail& run, std::size_t camera, std::size
     const double x = (at_ms - capture_start_ms(run, run.cameras[camera])) / 1000;
     if (x > kFirstSeconds) break;
     if (!made.x.empty() && x < made.x.back()) continue;
-    made.x.push_back(x);
-    made.y.push_back(frames[i].counter == frames[i - 1].counter + 1
-                         ? frames[i].from_start_ms - frames[i - 1].from_start_ms
-                         : evaluation::kNan);
+    made.add(x, frames[i].counter == frames[i - 1].counter + 1
+                    ? frames[i].from_start_ms - frames[i - 1].from_start_ms
+                    : evaluation::kNan);
   }
   return made;
 }
@@ -338,8 +330,7 @@ FigureSeries exposure_differences(const RunDetail& run, std::size_t camera, doub
     }
     const bool is_there =
         near < frames.size() && std::abs(distance_ms(near)) <= 500 / run.frame_rate_hz;
-    made.x.push_back((at_ms - start_ms) / 1000);
-    made.y.push_back(is_there ? distance_ms(near) : evaluation::kNan);
+    made.add((at_ms - start_ms) / 1000, is_there ? distance_ms(near) : evaluation::kNan);
   }
   return made;
 }

@@ -6,13 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "recording/counted.h"
 #include "reports/figures/figure_parts.h"
-#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "recording/version.h"
 #include "reports/page/web_files.h"
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {

@@ -13,7 +13,6 @@
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
 #include "reports/results/summary_document.h"
-#include "reports/text/html_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"

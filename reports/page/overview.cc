@@ -10,7 +10,7 @@
 
 #include "evaluation/scoring/metrics.h"
 #include "reports/results/results_answer.h"
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 
@@ -84,7 +84,7 @@ std::string axis_html(const LogAxis& axis) {
                      ticks);
 }
 
-// Of the metric that ranks; nothing if there is none.
+// The published value of the metric that ranks; nothing if there is none.
 std::optional<double> published_of(const Results& results, const Row& row, RankedBy ranked_by) {
   if (ranked_by == RankedBy::kAmd && row.published && row.published->amd_ms > 0) {
     return row.published->amd_ms;

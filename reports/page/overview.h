@@ -3,8 +3,8 @@
 // A line each, in order of the median of what the answer ranks by (evaluation/answer/answer.h):
 // the band from 5 to 95 % over the seeds, the median, the published value or bound where there is
 // one of that metric. The best pipeline, limits and references say so in words, not by colour
-// alone. It is HTML and style, without a script, and as wide as the page. Of more than 24 pipelines
-// the first are shown.
+// alone. It is HTML and style, without a script, and as wide as the page. The first 24 pipelines
+// are shown.
 //
 //   const std::string figure = overview_html(all_results, evaluation::RankedBy::kAmd);
 #ifndef SIMBENCH_REPORTS_PAGE_OVERVIEW_H_

@@ -7,7 +7,7 @@
 
 namespace simbench::reports::web {
 
-std::string_view page();    // report.html, a template of html_text.h
+std::string_view page();    // report.html, a template of escaped_text.h
 std::string_view style();   // report.css
 std::string_view script();  // the .js files, one after another: one module
 std::string_view uplot_script();

@@ -1,4 +1,3 @@
-#include "reports/reconstruction/reconstruction_answer.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -39,7 +38,7 @@ std::vector<const ReprojectionRow*> by_error(const std::vector<ReprojectionRow>&
   return sorted;
 }
 
-// Of the seeds of `as`, in their order; NaN for one that the row does not have.
+// The row's errors at the seeds of `as`, in their order; NaN for one that the row does not have.
 std::vector<double> errors_by_seed(const ReprojectionRow& row, const ReprojectionRow& as) {
   std::vector<double> values;
   values.reserve(as.seeds.size());

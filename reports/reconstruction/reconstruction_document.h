@@ -1,7 +1,7 @@
 // A reconstruction experiment for people: the paper's Table 4 over seeds, and how good the
 // synchronisation must be for a subject of some speed.
 //
-// It begins with the answer (reconstruction_answer.h). A row for each pipeline with mean and
+// It begins with the answer. A row for each pipeline with mean and
 // standard deviation of the reprojection error beside the published ones; details of the sets; the
 // curve of error over desynchronisation; the largest tolerable desynchronisation for each speed;
 // the assumptions. No line of a table is wider than 100 columns with pipeline names of up to 21.
@@ -18,6 +18,7 @@
 
 #include "reconstruction/results.h"
 #include "reports/figures/figure.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -60,6 +61,10 @@ std::optional<PublishedRatio> published_ratio(
 std::optional<double> speed_factor_for(const std::vector<reconstruction::CurvePoint>& points,
                                        double mean_cm);
 
+// Which pipeline gives the smallest reprojection error, whether that is above what a perfect
+// synchronisation leaves, how far apart cameras may be, and what is uncertain.
+AnswerText reconstruction_answer(const reconstruction::ReconstructionResults& results);
+
 // Its first block is Table 4.
 Document reconstruction_document(const reconstruction::ReconstructionResults& results);
 
@@ -74,21 +79,13 @@ std::string ms_text(double ms);
 std::string ms_text(const evaluation::Series& series);
 // "1.20 m/s", or "x 1.5" for a script without walking.
 std::string speed_text(double speed_m_per_s, double speed_factor);
-// "9.70, outside" (placement_text()); "-" without a published value.
-std::string published_text(const std::optional<scenarios::PublishedReprojection>& published,
-                           double scenarios::PublishedReprojection::*member,
-                           const evaluation::Series& simulated);
 // The sum of a count over the row's seeds.
 std::int64_t total_over_seeds(const reconstruction::ReprojectionRow& row,
                               std::int64_t reconstruction::SeedReprojection::*member);
 // The share of seeds for which the pipeline's own gathering emitted no set.
 double no_gathered_set_share(const reconstruction::ReprojectionRow& row);
 std::string limit_text(const SyncLimit& limit);  // "12.5" or "> 500"
-std::string cost_text(const SyncLimit& limit);   // "0.0123"
 
-// "ntp_last_set : yoon2021_both = 3.21 [2.90, 3.94] in the mean error, seed by seed; published:
-// 4.05."
-std::string ratio_sentence(const PublishedRatio& ratio);
 // The speed of the subject that the largest published mean would need.
 std::string speed_sentence(const reconstruction::SpeedNeeded& needed);
 // The simulated subject, the assumptions and the limits of the numbers, then the results' notes.
@@ -100,6 +97,31 @@ std::vector<std::string> honest_notes(const reconstruction::ReconstructionResult
 // and the published means as lines. A second one, if computed: the error over the speed, at the
 // desynchronisation of the row with the largest published mean. Without either, Figure::absent.
 Figure reconstruction_figure(const reconstruction::ReconstructionResults& results);
+
+// The experiment for programs and spreadsheets.
+//
+// JSON, schema_version 1; what does not exist is null. A series is {"median", "p05", "p95",
+// "values": [in seed order]}. Only /performance differs between equal runs.
+//
+//   {"schema_version", "scenario", "version", "commit", "first_seed", "seeds", "frames",
+//    "rows": [{"pipeline", "host_sync", "capture_alignment" (only if something steers the
+//      exposures), "device_time", "gathering", "mean_cm": series, "std_cm", "median_cm", "p95_cm",
+//      "desync_ms": likewise, "sets", "failed_sets", "missing_frames": over all seeds,
+//      "no_gathered_set_share", "published": null or {"mean_cm", "std_cm", "mean_inside",
+//      "std_inside" (null: too few seeds to tell)}, "notes"}],
+//    "published": {pipeline: {"mean_cm", "std_cm"}},
+//    "published_ratio": null or {"worst", "best", "ratio": series, "published"},
+//    "curve": [{"speed_m_per_s", "speed_factor", "desync_ms", "mean_cm": series, "std_cm"}],
+//    "limits": [{"speed_m_per_s", "speed_factor", "floor_cm", "limit_ms", "last_ms",
+//      "cost_cm_per_ms"}],
+//    "speed_needed": null or {"pipeline", "desync_ms", "published_mean_cm", "speed_m_per_s",
+//      "points": like curve},
+//    "notes": [...], "performance": {"wall_s", "seconds_per_set"}}
+//
+// CSV: a line for each pipeline, medians and bands, the same names; a column capture_alignment if
+// something steers the exposures of a row.
+std::string reconstruction_json(const reconstruction::ReconstructionResults& results);
+std::string reconstruction_csv(const reconstruction::ReconstructionResults& results);
 
 }  // namespace simbench::reports
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -12,10 +11,8 @@
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/page/html_page.h"
-#include "reports/reconstruction/reconstruction_answer.h"
 #include "reports/reconstruction/reconstruction_document.h"
-#include "reports/reconstruction/reconstruction_json.h"
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 

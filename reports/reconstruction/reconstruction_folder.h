@@ -4,7 +4,7 @@
 //   manifest.json           version, commit, command, start and end
 //   scenario.json           the resolved scenario: repeats the experiment
 //   table.txt               reports/reconstruction/reconstruction_document.h
-//   results.json            reports/reconstruction/reconstruction_json.h
+//   results.json            reports/reconstruction/reconstruction_document.h
 //   PIPELINE.ply, .png      a mesh painted with its errors, and its picture; other characters than
 //                           letters, digits, '.', '_' and '-' in the name become '_'
 //   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG needs gnuplot

@@ -1,4 +1,3 @@
-#include "reports/reconstruction/reconstruction_json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,10 +9,9 @@
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
 #include "reports/reconstruction/reconstruction_document.h"
-#include "reports/results/csv.h"
-#include "reports/results/derivation_json.h"
 #include "reports/results/json.h"
 #include "reports/results/results_document.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {

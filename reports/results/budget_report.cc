@@ -6,8 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "recording/version.h"
-#include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -155,10 +154,8 @@ Document budget_document(const BudgetReport& report) {
 }
 
 std::string budget_json(const BudgetReport& report) {
-  Json root = {{"schema_version", 1},
-               {"version", version()},
-               {"commit", commit()},
-               {"scenario", report.scenario}};
+  Json root = new_document();
+  root["scenario"] = report.scenario;
   state_derivation(report.derivation, root);
   root["seeds"] = {{"first", report.first_seed}, {"count", report.seeds}};
   root["budgets"] = Json::array();

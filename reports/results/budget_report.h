@@ -2,7 +2,7 @@
 // the error of its host clocks comes from.
 //
 // JSON: {"schema_version", "version", "commit", "scenario" and what it rests on
-// (reports/results/derivation_json.h), "seeds", "budgets": [{"pipeline",
+// (reports/results/json.h), "seeds", "budgets": [{"pipeline",
 // "amd_of_sets", "amd_ms": {"total", "remainder", "stages": [{"stage", "mean", "p05", "p95",
 // "values"}]}, "absolute_error_ms", "physical_ms", "host_error_ms": {"note", "total", "algorithm",
 // "parts": [{"part", "cause", "mean", ...}]}}]}; "host_error_ms" has the note alone where it is not

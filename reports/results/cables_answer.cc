@@ -1,5 +1,3 @@
-#include "reports/results/cables_answer.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +5,8 @@
 #include <vector>
 
 #include "evaluation/answer/answer.h"
-#include "reports/text/number_text.h"
+#include "recording/counted.h"
+#include "reports/results/results_answer.h"
 #include "reports/text/time_text.h"
 
 namespace simbench::reports {

@@ -11,6 +11,7 @@
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/results_document.h"
+#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -19,10 +20,6 @@ using evaluation::CsvForm;
 using evaluation::Metric;
 using evaluation::Row;
 using evaluation::SeedScore;
-
-std::string csv_line(const std::vector<std::string>& cells) {
-  return fmt::format("{}\n", fmt::join(cells, ","));
-}
 
 void add_names(CsvForm form, std::vector<std::string>& names) {
   for (const Metric& metric : evaluation::metrics()) {
@@ -93,18 +90,6 @@ std::string figures_cell(const evaluation::Results& results, const Row& row) {
   return csv_cell(fmt::format("{}", fmt::join(figures, "; ")));
 }
 
-// The end of a header or of a line: with a column of the changes of a changed world.
-struct LineEnds {
-  explicit LineEnds(const scenarios::Derivation& derivation) {
-    const std::string changed = scenarios::changed_text(derivation);
-    if (changed.empty()) return;
-    header = ",changed\n";
-    line = "," + csv_cell(changed) + "\n";
-  }
-  std::string header = "\n";
-  std::string line = "\n";
-};
-
 bool synchronised(const SeedScore& seed, std::size_t host) {
   return std::none_of(seed.failures.begin(), seed.failures.end(),
                       [host](const SyncOutcome& failure) { return failure.slave == host; });
@@ -112,14 +97,12 @@ bool synchronised(const SeedScore& seed, std::size_t host) {
 
 }  // namespace
 
-std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
+LineEnds::LineEnds(const scenarios::Derivation& derivation) {
+  const std::string changed = scenarios::changed_text(derivation);
+  if (changed.empty()) return;
+  header = ",changed\n";
+  line = fmt::format(",{}\n", csv_cell(changed));
 }
-
-std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results) || !note_lines(results).empty();
@@ -128,9 +111,8 @@ std::string csv(const evaluation::Results& results) {
   const bool has_figures = !results.published_figures.empty();
   if (has_figures) names.emplace_back("published_figures");
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
-  const std::string changed = scenarios::changed_text(results.derivation);
-  if (!changed.empty()) names.emplace_back("changed");
-  std::string out = csv_line(names);
+  const LineEnds ends(results.derivation);
+  std::string out = fmt::format("{}{}", fmt::join(names, ","), ends.header);
   for (const Row& row : results.rows) {
     std::vector<std::string> cells = {csv_cell(row.pipeline)};
     for (const StageInfo& stage : stages) cells.push_back(csv_cell(at_stage(row, stage.id)));
@@ -146,8 +128,7 @@ std::string csv(const evaluation::Results& results) {
                    {ground_truth_name(row.ground_truth), row.verified() ? "verified" : "unverified",
                     csv_cell(fmt::format("{}", fmt::join(row.notes, "; ")))});
     }
-    if (!changed.empty()) cells.push_back(csv_cell(changed));
-    out += csv_line(cells);
+    out += fmt::format("{}{}", fmt::join(cells, ","), ends.line);
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "evaluation/scoring/results.h"
+#include "scenarios/derivation.h"
 
 namespace simbench::reports {
 
@@ -33,9 +34,12 @@ void write_frames_csv(const evaluation::Results& results, std::ostream& out);
 // hosts.csv: pipeline,seed,host,host_error_ms,synchronised (1 or 0), and changed as above.
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
 
-// A cell, quoted where necessary (RFC 4180); what is not finite is empty.
-std::string csv_cell(std::string_view text);
-std::string csv_cell(double value);
+// The end of a header and of each line of a CSV: of a changed world with a last column, as above.
+struct LineEnds {
+  explicit LineEnds(const scenarios::Derivation& derivation);
+  std::string header = "\n";
+  std::string line = "\n";
+};
 
 }  // namespace simbench::reports
 

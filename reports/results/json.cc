@@ -1,12 +1,12 @@
 #include "reports/results/json.h"
 
+#include <algorithm>
+#include <string_view>
+
 #include "algorithms/ports/stage.h"
+#include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
-#include "recording/version.h"
-#include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
-#include "reports/results/published_figures_json.h"
-#include "reports/text/json_node.h"
 
 namespace simbench::reports {
 
@@ -17,6 +17,9 @@ Json inside_json(const evaluation::Percentile& percentile) {
 }
 
 namespace {
+
+using evaluation::FigureComparison;
+using scenarios::Derivation;
 
 Json published_json(const std::optional<evaluation::PublishedComparison>& published) {
   if (!published) return nullptr;
@@ -77,6 +80,63 @@ Json claim_json(const evaluation::Claim& claim) {
           {"decided_seeds", claim.decided_seeds}};
 }
 
+Json stated_value(const std::string& value) { return value.empty() ? Json() : Json::parse(value); }
+
+std::string value_text(const JsonNode& node) {
+  return node.is_null() ? "" : Json::parse(node.dump()).dump();
+}
+
+constexpr const char* kFigures = "published_figures";
+
+Json published_figure_json(const FigureComparison& compared) {
+  const scenarios::PublishedFigure& figure = compared.figure;
+  Json entry = {
+      {"pipeline", figure.pipeline},
+      {"metric", figure.metric},
+      {figure.number_name(), figure.number()},
+      {"conditions", figure.conditions},
+      {"source", figure.source},
+      {"percentile", compared.percentile.percent},
+      {"percentile_interval", Json::array({compared.percentile.low, compared.percentile.high})}};
+  if (!figure.value) {
+    entry["kept_percent"] = compared.kept.percent;
+    entry["kept_percent_interval"] = Json::array({compared.kept.low, compared.kept.high});
+  }
+  const std::string_view verdict = evaluation::verdict_word(compared.verdict);
+  entry["verdict"] = verdict.empty() ? Json() : Json(verdict);
+  return entry;
+}
+
+const evaluation::Metric& read_figure_metric(const JsonNode& node) {
+  const std::string id = node.text();
+  const auto found = std::ranges::find_if(evaluation::metrics(), [&id](const auto& metric) {
+    return metric.is_series() && metric.id == id;
+  });
+  if (found == evaluation::metrics().end()) node.refuse("a metric with a value of each seed");
+  return *found;
+}
+
+scenarios::PublishedFigure read_figure(const JsonNode& node) {
+  scenarios::PublishedFigure figure;
+  figure.pipeline = node["pipeline"].text();
+  const evaluation::Metric& metric = read_figure_metric(node["metric"]);
+  figure.metric = metric.id;
+  int stated = 0;
+  const auto read = [&](const char* name, std::optional<double>& number) {
+    if (!node.has(name)) return;
+    ++stated;
+    if (node[name].is_null()) node[name].refuse("a number");
+    number = node[name].value_of(metric);
+  };
+  read("at_most", figure.at_most);
+  read("value", figure.value);
+  read("at_least", figure.at_least);
+  if (stated != 1) node.refuse("exactly one of at_most, value and at_least");
+  figure.conditions = node["conditions"].text();
+  figure.source = node["source"].text();
+  return figure;
+}
+
 }  // namespace
 
 Json performance_json(const evaluation::Performance& cost) {
@@ -89,10 +149,8 @@ Json performance_json(const evaluation::Performance& cost) {
 }
 
 std::string json(const evaluation::Results& results) {
-  Json root = {{"schema_version", kArchiveSchemaVersion},
-               {"version", version()},
-               {"commit", commit()},
-               {"scenario", results.scenario}};
+  Json root = new_document(kArchiveSchemaVersion);
+  root["scenario"] = results.scenario;
   state_derivation(results.derivation, root);
   root.update({{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
                {"rows", Json::array()},
@@ -104,6 +162,53 @@ std::string json(const evaluation::Results& results) {
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
   root["performance"] = performance_json(results.performance);
   return file_text(root);
+}
+
+void state_derivation(const Derivation& derivation, Json& root) {
+  if (derivation.base.empty() && derivation.unpublished.empty()) return;
+  root["based_on"] = derivation.base.empty() ? Json() : Json(derivation.base);
+  Json& changed = root["changed"] = Json::array();
+  for (const scenarios::Change& change : derivation.changes) {
+    changed.push_back({{"pointer", change.pointer},
+                       {"from", stated_value(change.from)},
+                       {"to", stated_value(change.to)}});
+  }
+  root["published_left_out"] =
+      derivation.unpublished.empty() ? Json() : Json(derivation.unpublished);
+}
+
+Derivation read_derivation(const JsonNode& root) {
+  Derivation derivation;
+  if (!root.has("based_on")) return derivation;
+  if (const JsonNode base = root["based_on"]; !base.is_null()) derivation.base = base.text();
+  for (const JsonNode& change : root["changed"].elements()) {
+    derivation.changes.push_back(
+        {change["pointer"].text(), value_text(change["from"]), value_text(change["to"])});
+  }
+  const JsonNode unpublished = root["published_left_out"];
+  if (!unpublished.is_null()) derivation.unpublished = unpublished.text();
+  return derivation;
+}
+
+void state_published_figures(const evaluation::Results& results, Json& root) {
+  if (results.published_figures.empty()) return;
+  Json& all = root[kFigures] = Json::array();
+  for (const FigureComparison& compared : results.published_figures) {
+    all.push_back(published_figure_json(compared));
+  }
+}
+
+std::vector<FigureComparison> read_published_figures(const JsonNode& root,
+                                                     std::span<const evaluation::Row> rows) {
+  std::vector<FigureComparison> all;
+  if (!root.has(kFigures)) return all;
+  for (const JsonNode& node : root[kFigures].elements()) {
+    const scenarios::PublishedFigure figure = read_figure(node);
+    const evaluation::Row* const row = find_row(rows, figure.pipeline);
+    if (row == nullptr) node["pipeline"].refuse("a pipeline of /rows");
+    all.push_back(compare_figure(figure, *row));
+  }
+  return all;
 }
 
 }  // namespace simbench::reports

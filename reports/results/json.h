@@ -6,7 +6,7 @@
 // differs between runs.
 //
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
-//    "based_on", "changed", "published_left_out" (reports/results/derivation_json.h),
+//    "based_on", "changed", "published_left_out": see state_derivation(),
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
 //              "capture_alignment": what steers the exposures, only if something does,
@@ -30,10 +30,13 @@
 #ifndef SIMBENCH_REPORTS_RESULTS_JSON_H_
 #define SIMBENCH_REPORTS_RESULTS_JSON_H_
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "evaluation/scoring/results.h"
 #include "reports/text/json_node.h"
+#include "scenarios/derivation.h"
 
 namespace simbench::reports {
 
@@ -47,6 +50,27 @@ Json performance_json(const evaluation::Performance& cost);
 
 // Indented by two, ends with a line feed.
 std::string json(const evaluation::Results& results);
+
+// What a scenario rests on (scenarios/derivation.h), in any document for programs: members beside
+// "scenario", only of a scenario that rests on another or is changed:
+//
+//   "based_on": the name of the built-in scenario, or of the own file,
+//   "changed": [{"pointer": "/trigger/rate_hz", "from": 45, "to": 30}], null: not there,
+//   "published_left_out": the scenario whose published values do not hold here, or null
+void state_derivation(const scenarios::Derivation& derivation, Json& root);
+// Throws scenarios::InputError. A document without the members has none.
+scenarios::Derivation read_derivation(const JsonNode& root);
+
+// Published figures and their comparison: an array "published_figures", which results without
+// figures lack. An entry has what the scenario states, the percentile of the number among the
+// seeds, of a bound the percentage of the seeds that keep it, each with its interval, and the
+// verdict: "inside", "outside", "holds", "fails" or null (too few seeds).
+void state_published_figures(const evaluation::Results& results, Json& root);
+// Takes what was published and compares it anew with the rows, as medians are computed anew. Throws
+// scenarios::InputError for a pipeline without a row, a metric that there is not or that is no
+// series, and for several numbers or none.
+std::vector<evaluation::FigureComparison> read_published_figures(
+    const JsonNode& root, std::span<const evaluation::Row> rows);
 
 }  // namespace simbench::reports
 

@@ -10,9 +10,9 @@
 #include "algorithms/ports/stage.h"
 #include "evaluation/run/leaderboard.h"
 #include "evaluation/scoring/rows.h"
+#include "recording/collected.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
-#include "reports/results/published_figures_block.h"
 #include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -52,9 +52,7 @@ Table error_table(const Board& board) {
   std::vector<Field<Rank>> fields = {
       {{board.name.empty() ? "reference" : board.name, Align::kLeft}, name},
       {{"stamps", Align::kLeft}, stamps}};
-  std::vector<const Row*> rows;
-  rows.reserve(ranks.size());
-  for (const Rank& rank : ranks) rows.push_back(rank.row);
+  const std::vector<const Row*> rows = collected(ranks, &Rank::row);
   for (const Field<Row>& field : scored_seeds_field(rows, board_metrics())) {
     fields.push_back({field.column, [field](const Rank& rank) { return field.cell(*rank.row); }});
   }
@@ -78,17 +76,14 @@ Table error_table(const Board& board) {
 }
 
 Table gathering_table(const Board& board) {
-  std::vector<const Row*> rows;
-  for (const Rank& rank : board.online.empty() ? board.offline : board.online) {
-    rows.push_back(rank.row);
-  }
+  const std::vector<const Row*> rows =
+      collected(board.online.empty() ? board.offline : board.online, &Rank::row);
   return sets_table(rows);
 }
 
 // "each host_sync + hull_300 + yoon2021": the stage that the board varies, and the other ones.
 std::string composition(const Board& board) {
-  std::vector<const Row*> rows;
-  for (const Rank& rank : board.online) rows.push_back(rank.row);
+  std::vector<const Row*> rows = collected(board.online, &Rank::row);
   for (const Rank& rank : board.offline) rows.push_back(rank.row);
   std::string text;
   for (const StageInfo& stage : kPipelineStages) {
@@ -157,15 +152,9 @@ Document leaderboard_document(const Results& results, const std::string& summary
     alignment->prose = alignment_legend();
     document.blocks.push_back(std::move(*alignment));
   }
-  if (std::optional<Block> figures = published_figures_block(results)) {
-    document.blocks.push_back(std::move(*figures));
-  }
-  if (Block failures = failures_block(results); !failures.prose.empty()) {
-    document.blocks.push_back(std::move(failures));
-  }
-  if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
-    document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
-  }
+  add(published_figures_block(results), document.blocks);
+  add(failures_block(results), document.blocks);
+  add(notes_block(results), document.blocks);
   Block more;
   const bool is_single =
       std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera);

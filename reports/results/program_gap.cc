@@ -1,5 +1,3 @@
-#include "reports/results/program_gap.h"
-
 #include <fmt/format.h>
 
 #include <string>
@@ -7,6 +5,7 @@
 
 #include "evaluation/run/leaderboard.h"
 #include "evaluation/scoring/metrics.h"
+#include "reports/results/results_document.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 

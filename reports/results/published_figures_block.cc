@@ -1,5 +1,3 @@
-#include "reports/results/published_figures_block.h"
-
 #include <fmt/format.h>
 
 #include <string>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "evaluation/scoring/metrics.h"
+#include "reports/results/results_document.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 

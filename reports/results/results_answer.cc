@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "evaluation/run/leaderboard.h"
-#include "reports/results/cables_answer.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"

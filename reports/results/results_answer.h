@@ -28,6 +28,16 @@ std::string distance_text(const evaluation::Results& results, const evaluation::
 // What these seeds leave open; "" if that is little.
 std::string uncertainty_text(const evaluation::Answer& answer);
 
+// Does one need trigger cables? Asked of a table of alignments. A method reaches a spread if the 95
+// % quantile of the seeds' 95 % exposure spreads is below it: in nearly all worlds, nearly all
+// pulses are exposed that close together. The spreads are 1, 0.1 and 0.01 ms, the methods are the
+// pipelines that a rig without cables can run: "No trigger cable is needed for 1 ms or 0.1 ms, but
+// for 0.01 ms one is:
+// ..."
+std::string cables_text(const evaluation::Results& results);
+// What the rows that follow a trigger have; "" if there are none.
+std::string cable_sentence(const evaluation::Results& results);
+
 // The name of what an answer ranks by: "AMD".
 const char* ranked_name(evaluation::RankedBy ranked_by);
 

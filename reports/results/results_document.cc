@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <string_view>
 
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/metric_columns.h"
-#include "reports/results/program_gap.h"
-#include "reports/results/published_figures_block.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -74,13 +71,6 @@ RowFields published_rmdv_fields() {
                         return known.rmdv_attainable ? placement_text(known.rmdv_percentile)
                                                      : "not attainable";
                       })};
-}
-
-std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
-  std::vector<const Row*> pointers;
-  pointers.reserve(rows.size());
-  for (const Row& row : rows) pointers.push_back(&row);
-  return pointers;
 }
 
 // The paper's two metrics beside the published values.
@@ -191,7 +181,7 @@ std::vector<std::string> results_legend(const Results& results) {
 
 Table claims_table(const Results& results) {
   const std::vector<Field<Claim>> fields = {
-      {{"claim", Align::kLeft}, [](const Claim& claim) { return claim.id; }},
+      {{"claim", Align::kLeft}, &Claim::id},
       {{"holds in"},
        [&results](const Claim& claim) {
          if (!claim.holds_fraction) return std::string("-");
@@ -232,12 +222,23 @@ std::string unsynchronised_line(const Row& row) {
 
 }  // namespace
 
-Block failures_block(const Results& results) {
+std::optional<Block> failures_block(const Results& results) {
   Block block;
   for (const Row& row : results.rows) {
     if (row.unsynchronised_hosts > 0) block.prose.push_back(unsynchronised_line(row));
   }
-  return block;
+  return block.prose.empty() ? std::nullopt : std::optional(std::move(block));
+}
+
+std::optional<Block> notes_block(const Results& results, std::size_t most) {
+  std::vector<std::string> notes = note_lines(results);
+  if (notes.empty()) return std::nullopt;
+  if (notes.size() > most) {
+    const std::string rest = fmt::format("... and {} more: --verbose", notes.size() - most);
+    notes.resize(most);
+    notes.push_back(rest);
+  }
+  return Block{.heading = "What went wrong", .items = std::move(notes), .is_warning = true};
 }
 
 std::vector<Field<Row>> metric_fields(const Metric& metric) {
@@ -288,17 +289,20 @@ std::vector<std::string> alignment_legend() {
   return lines;
 }
 
+std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
+  std::vector<const Row*> pointers;
+  pointers.reserve(rows.size());
+  for (const Row& row : rows) pointers.push_back(&row);
+  return pointers;
+}
+
 Table sets_table(const std::vector<const Row*>& rows) {
-  RowFields fields = {pipeline_field<Row>(),
-                      {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
+  RowFields fields = {pipeline_field<Row>(), {{"gathering", Align::kLeft}, &Row::gathering}};
   append(fields, scored_seeds_field(rows, table_metrics(&TablePlaces::sets)));
   for (const Metric* metric : table_metrics(&TablePlaces::sets)) {
     append(fields, metric_fields(*metric));
   }
-  std::vector<std::reference_wrapper<const Row>> subjects;
-  subjects.reserve(rows.size());
-  for (const Row* row : rows) subjects.emplace_back(*row);
-  return table_of(fields, subjects);
+  return table_of(fields, rows);
 }
 
 std::vector<std::string> sets_legend(const Results& results) {
@@ -332,23 +336,15 @@ Document results_document(const Results& results, const std::string& summary) {
     blocks.push_back({.heading = "Time error of the hosts",
                       .table = table_of_metrics(results, &TablePlaces::time_errors)});
   }
-  if (std::optional<Block> alignment = alignment_block(results)) {
-    blocks.push_back(std::move(*alignment));
-  }
-  if (std::optional<Block> figures = published_figures_block(results)) {
-    blocks.push_back(std::move(*figures));
-  }
-  if (std::optional<Block> gap = program_gap_block(results)) blocks.push_back(std::move(*gap));
+  add(alignment_block(results), blocks);
+  add(published_figures_block(results), blocks);
+  add(program_gap_block(results), blocks);
   if (gatherings_differ(results)) {
     blocks.push_back({.heading = "Gathered sets, over all seeds",
                       .table = sets_table(pointers_to(results.rows))});
   }
-  if (Block failures = failures_block(results); !failures.prose.empty()) {
-    blocks.push_back(std::move(failures));
-  }
-  if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
-    blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
-  }
+  add(failures_block(results), blocks);
+  add(notes_block(results), blocks);
   blocks.push_back({.heading = "How to read it", .items = results_legend(results)});
   blocks.push_back(stages_block(results.rows));
   if (!results.claims.empty()) {

@@ -14,6 +14,8 @@
 #define SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,13 +49,34 @@ std::optional<Block> alignment_block(const evaluation::Results& results);
 // The meaning of its columns.
 std::vector<std::string> alignment_legend();
 
+// Addresses of the rows, in their order.
+std::vector<const evaluation::Row*> pointers_to(const std::vector<evaluation::Row>& rows);
+
 // The gathered sets: a line per pipeline, to compare policies.
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
 // The meaning of its columns.
 std::vector<std::string> sets_legend(const evaluation::Results& results);
 
-// A line for each pipeline whose host synchronisation failed, with the first reason.
-Block failures_block(const evaluation::Results& results);
+// Published figures of any metric beside the seeds (evaluation/scoring/published_figures.h), in the
+// scenario's order, one entry for each whose pipeline has a row; nothing without figures. The block
+// has a table, the meaning of its verdicts, and what was measured on what; of lines there is one
+// for each figure, for one screen.
+std::optional<Block> published_figures_block(const evaluation::Results& results);
+std::optional<Block> published_figures_lines(const evaluation::Results& results);
+
+// Real programs beside the algorithms that model them (scenarios/scenario.h, HostPrograms::model);
+// nothing where no row is a program whose model has a row. The gap is the median over the seeds of
+// the program's value divided by its model's, seed by seed: both met the same world. Captures have
+// it of AMD and the host clock error, clock runs of the spread of the hosts' clocks over time and
+// the RMS time error.
+std::optional<Block> program_gap_block(const evaluation::Results& results);
+
+// A line for each pipeline whose host synchronisation failed, with the first reason; nothing if
+// none did.
+std::optional<Block> failures_block(const evaluation::Results& results);
+// The notes of all rows, the first `most` of them; nothing if there are none.
+std::optional<Block> notes_block(const evaluation::Results& results,
+                                 std::size_t most = std::numeric_limits<std::size_t>::max());
 
 // The floor of two-way methods with unequal links; empty if links are equal.
 std::string asymmetry_line(const evaluation::Results& results);

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "evaluation/answer/answer.h"
@@ -16,7 +14,6 @@
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/metric_columns.h"
-#include "reports/results/published_figures_block.h"
 #include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -32,7 +29,7 @@ using evaluation::Results;
 using evaluation::Row;
 using RowFields = std::vector<Field<Row>>;
 
-// So that all of it stays on a screen of 50 lines.
+// With these all of it stays on a screen of 50 lines.
 constexpr std::size_t kMostSummaryRows = 20;
 constexpr std::size_t kMostRowsOfBoard = 7;
 constexpr std::size_t kMostNotes = 3;
@@ -90,13 +87,6 @@ RowFields summary_fields(const Results& results, const std::vector<const Row*>& 
   return fields;
 }
 
-Table table_of_rows(const RowFields& fields, const std::vector<const Row*>& rows) {
-  std::vector<std::reference_wrapper<const Row>> subjects;
-  subjects.reserve(rows.size());
-  for (const Row* row : rows) subjects.emplace_back(*row);
-  return table_of(fields, subjects);
-}
-
 std::string rest_text(std::size_t rows, std::size_t most) {
   if (rows <= most) return "";
   return fmt::format("... and {} more: --verbose shows them.", rows - most);
@@ -110,19 +100,17 @@ void shorten(std::vector<const Row*>& rows, std::size_t most, Block& block) {
 }
 
 Block rows_block(const Results& results) {
-  std::vector<const Row*> rows;
-  for (const Row& row : results.rows) rows.push_back(&row);
+  std::vector<const Row*> rows = pointers_to(results.rows);
   Block block;
   shorten(rows, kMostSummaryRows, block);
-  block.table = table_of_rows(summary_fields(results, rows, RankedBy::kAmd), rows);
+  block.table = table_of(summary_fields(results, rows, RankedBy::kAmd), rows);
   return block;
 }
 
 // By the spread of the exposures, the least first; rows without one last.
 Block spread_block(const Results& results) {
   constexpr RankedBy ranked_by = RankedBy::kExposureSpread;
-  std::vector<const Row*> rows;
-  for (const Row& row : results.rows) rows.push_back(&row);
+  std::vector<const Row*> rows = pointers_to(results.rows);
   std::ranges::stable_sort(rows, {}, [](const Row* row) {
     const double spread_ms = evaluation::ranked_series(*row, ranked_by).median;
     return std::isnan(spread_ms) ? std::numeric_limits<double>::infinity() : spread_ms;
@@ -133,7 +121,7 @@ Block spread_block(const Results& results) {
   for (const Metric* metric : table_metrics(&TablePlaces::alignment)) {
     add_metric(*metric, fields);
   }
-  block.table = table_of_rows(fields, rows);
+  block.table = table_of(fields, rows);
   return block;
 }
 
@@ -145,7 +133,7 @@ Block board_block(const Results& results, const Board& board) {
   Block block;
   shorten(rows, kMostRowsOfBoard, block);
   const RankedBy ranked_by = RankedBy::kAbsoluteError;
-  block.table = table_of_rows(summary_fields(results, rows, ranked_by), rows);
+  block.table = table_of(summary_fields(results, rows, ranked_by), rows);
   return block;
 }
 
@@ -165,17 +153,8 @@ std::vector<std::string> summary_legend(const Results& results) {
 }
 
 void add_failures(const Results& results, Document& document) {
-  if (Block failures = failures_block(results); !failures.prose.empty()) {
-    document.blocks.push_back(std::move(failures));
-  }
-  std::vector<std::string> notes = note_lines(results);
-  if (notes.empty()) return;
-  if (notes.size() > kMostNotes) {
-    const std::string rest = fmt::format("... and {} more: --verbose", notes.size() - kMostNotes);
-    notes.resize(kMostNotes);
-    notes.push_back(rest);
-  }
-  document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
+  add(failures_block(results), document.blocks);
+  add(notes_block(results, kMostNotes), document.blocks);
 }
 
 }  // namespace
@@ -196,9 +175,7 @@ Document summary_document(const Results& results, const SummaryOptions& options,
   const std::vector<std::string> head = results_head(results, options.summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
   document.blocks = summary_blocks(results, options.table);
-  if (std::optional<Block> figures = published_figures_lines(results)) {
-    document.blocks.push_back(std::move(*figures));
-  }
+  add(published_figures_lines(results), document.blocks);
   add_failures(results, document);
   const bool is_of_alignment = options.table == scenarios::TableKind::kAlignment;
   document.blocks.push_back(

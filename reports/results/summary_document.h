@@ -3,8 +3,8 @@
 // The answer (reports/results/results_answer.h), what the scenario is, and one table with a row per
 // pipeline and the metrics that name it (TablePlaces::summary), each value in the unit
 // that fits it. A leaderboard has a short table for each board; a table of alignments has the
-// metrics of exposures, in order of their spread. Whatever failed is said; so is
-// where the rest is. Of many pipelines the first are shown, in order of the answer's metric for
+// metrics of exposures, in order of their spread. Whatever failed is said, and
+// where the rest is. The first of many pipelines are shown, in order of the answer's metric for
 // leaderboards, else in the scenario's order.
 //
 //   const AnswerText answer = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);

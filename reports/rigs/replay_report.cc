@@ -9,8 +9,8 @@
 
 #include "recording/text_fields.h"
 #include "recording/version.h"
-#include "reports/results/csv.h"
 #include "reports/text/block.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"

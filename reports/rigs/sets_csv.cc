@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bags/frame_track.h"
-#include "reports/results/csv.h"
+#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 namespace {

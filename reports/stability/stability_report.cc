@@ -10,29 +10,25 @@
 #include <utility>
 
 #include "recording/counted.h"
-#include "recording/version.h"
-#include "reports/results/csv.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
 
+using evaluation::ClockCurve;
 using evaluation::LogStability;
 using evaluation::Stability;
 using evaluation::StabilityPoint;
 
 constexpr std::size_t kStepsInText = 10;
 
-struct Curve {
-  const char* name;
-  const char* header;
-  std::vector<StabilityPoint> Stability::*points;
-};
-constexpr std::array<Curve, 5> kCurves = {{{"adev", "ADEV", &Stability::adev},
-                                           {"mdev", "MDEV", &Stability::mdev},
-                                           {"hdev", "HDEV", &Stability::hdev},
-                                           {"tdev_ms", "TDEV\nms", &Stability::tdev_ms},
-                                           {"mtie_ms", "MTIE\nms", &Stability::mtie_ms}}};
+// The unit on a line of its own.
+std::string column_header(const ClockCurve& curve) {
+  std::string header = curve.axis;
+  std::replace(header.begin(), header.end(), ' ', '\n');
+  return header;
+}
 
 struct Size {
   const char* name;
@@ -96,14 +92,6 @@ std::vector<std::string> step_items(const Stability& stability) {
   return items;
 }
 
-Json points_json(const std::vector<StabilityPoint>& points) {
-  Json list = Json::array();
-  for (const StabilityPoint& point : points) {
-    list.push_back({{"tau_s", point.tau_s}, {"value", point.value}, {"terms", point.terms}});
-  }
-  return list;
-}
-
 Json file_json(const LogStability& file) {
   Json object = {{"file", file.file},
                  {"format", file.format},
@@ -128,15 +116,17 @@ Json file_json(const LogStability& file) {
 
 Table stability_table(const Stability& stability) {
   std::vector<Column> columns = {{"tau s"}};
-  for (const Curve& curve : kCurves) columns.push_back({curve.header});
+  for (const ClockCurve& curve : evaluation::clock_curves())
+    columns.push_back({column_header(curve)});
   Table table(columns);
   // MTIE reaches farthest, and all begin at one interval and go on by octaves.
   std::size_t octaves = 0;
-  for (const Curve& curve : kCurves) octaves = std::max(octaves, (stability.*curve.points).size());
+  for (const ClockCurve& curve : evaluation::clock_curves())
+    octaves = std::max(octaves, (stability.*curve.points).size());
   for (std::size_t i = 0; i < octaves; ++i) {
     std::vector<std::string> cells = {
         fmt::format("{:.6g}", std::ldexp(stability.interval_s, static_cast<int>(i)))};
-    for (const Curve& curve : kCurves) {
+    for (const ClockCurve& curve : evaluation::clock_curves()) {
       const std::vector<StabilityPoint>& points = stability.*curve.points;
       cells.push_back(i < points.size() ? three_digits(points[i].value) : "-");
     }
@@ -145,9 +135,18 @@ Table stability_table(const Stability& stability) {
   return table;
 }
 
+Json points_json(const std::vector<StabilityPoint>& points) {
+  Json list = Json::array();
+  for (const StabilityPoint& point : points) {
+    list.push_back({{"tau_s", point.tau_s}, {"value", point.value}, {"terms", point.terms}});
+  }
+  return list;
+}
+
 void add_stability(Json& object, const Stability& stability) {
   for (const Size& size : kSizes) object[size.name] = stability.time_error.*size.value;
-  for (const Curve& curve : kCurves) object[curve.name] = points_json(stability.*curve.points);
+  for (const ClockCurve& curve : evaluation::clock_curves())
+    object[curve.id] = points_json(stability.*curve.points);
 }
 
 Document stability_document(const std::vector<LogStability>& files) {
@@ -187,9 +186,9 @@ std::string stability_csv(const std::vector<LogStability>& files) {
     add("longest_gap_s", file.longest_gap_s);
     if (file.frequency_offset) add("frequency_offset_ppb", 1e9 * *file.frequency_offset);
     for (const Size& size : kSizes) add(size.name, stability.time_error.*size.value);
-    for (const Curve& curve : kCurves) {
+    for (const ClockCurve& curve : evaluation::clock_curves()) {
       for (const StabilityPoint& point : stability.*curve.points) {
-        text += fmt::format("{}{},{},{},{}\n", head, curve.name, csv_cell(point.tau_s),
+        text += fmt::format("{}{},{},{},{}\n", head, curve.id, csv_cell(point.tau_s),
                             csv_cell(point.value), point.terms);
       }
     }
@@ -199,10 +198,8 @@ std::string stability_csv(const std::vector<LogStability>& files) {
 }
 
 std::string stability_json(const std::vector<LogStability>& files) {
-  Json root = {{"schema_version", 1},
-               {"version", version()},
-               {"commit", commit()},
-               {"files", Json::array()}};
+  Json root = new_document();
+  root["files"] = Json::array();
   for (const LogStability& file : files) root["files"].push_back(file_json(file));
   return file_text(root);
 }

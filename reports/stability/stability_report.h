@@ -31,6 +31,8 @@ Document stability_document(const std::vector<evaluation::LogStability>& files);
 std::string stability_csv(const std::vector<evaluation::LogStability>& files);
 std::string stability_json(const std::vector<evaluation::LogStability>& files);
 
+// A list of the points of a curve.
+Json points_json(const std::vector<evaluation::StabilityPoint>& points);
 // The members "max_te_ms" to "mtie_ms" above.
 void add_stability(Json& object, const evaluation::Stability& stability);
 // A line for each tau.

@@ -1,5 +1,3 @@
-#include "reports/sweep/sweep_answer.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,7 +12,7 @@
 #include "evaluation/answer/answer.h"
 #include "evaluation/sweep/ranking.h"
 #include "reports/sweep/sweep_parts.h"
-#include "reports/sweep/sweep_ranking.h"
+#include "reports/sweep/sweep_report.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 #include "scenarios/loader.h"

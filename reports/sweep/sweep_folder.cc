@@ -9,7 +9,6 @@
 #include <array>
 #include <boost/crc.hpp>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,7 +17,7 @@
 #include <vector>
 
 #include "algorithms/ports/assert.h"
-#include "reports/text/file_content.h"
+#include "recording/number_in.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::reports {
@@ -42,6 +41,27 @@ bool write_all(int file, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
+}
+
+// Writes a file completely or not at all: under a temporary name (NAME.tmp), then renamed. Unlike
+// write_file() it uses a name that the next start knows as the sweep's own and removes, and its
+// errors state that the finished runs are kept.
+void replace_file(const fs::path& path, std::string_view content) {
+  fs::path temporary = path;
+  temporary += ".tmp";
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) log_failed(path, "cannot be written");
+  const bool written = write_all(file, content);
+  const int reason = errno;
+  const bool closed = ::close(file) == 0;
+  if (!written || !closed) {
+    if (!written) errno = reason;
+    const int kept = errno;
+    ::unlink(temporary.c_str());
+    errno = kept;
+    log_failed(path, "cannot be written");
+  }
+  if (::rename(temporary.c_str(), path.c_str()) != 0) log_failed(path, "cannot be written");
 }
 
 constexpr const char* kLog = "runs.log";
@@ -98,24 +118,6 @@ std::string difference(const nlohmann::json& there, const nlohmann::json& here) 
 
 }  // namespace
 
-void replace_file(const fs::path& path, std::string_view content) {
-  fs::path temporary = path;
-  temporary += ".tmp";
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) log_failed(path, "cannot be written");
-  const bool written = write_all(file, content);
-  const int reason = errno;
-  const bool closed = ::close(file) == 0;
-  if (!written || !closed) {
-    if (!written) errno = reason;
-    const int kept = errno;
-    ::unlink(temporary.c_str());
-    errno = kept;
-    log_failed(path, "cannot be written");
-  }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) log_failed(path, "cannot be written");
-}
-
 SweepLog::SweepLog(fs::path path, std::string_view identity, std::size_t runs)
     : path_(std::move(path)), texts_(runs) {
   boost::crc_32_type crc;
@@ -143,14 +145,13 @@ bool SweepLog::take(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t second = first == std::string_view::npos ? first : line.find(' ', first + 1);
   if (second == std::string_view::npos) return false;
-  std::size_t run = 0;
-  const auto [stop, error] = std::from_chars(line.data(), line.data() + first, run);
-  if (error != std::errc() || run >= texts_.size()) return false;
+  const auto run = number_in<std::size_t>(line.substr(0, first));
+  if (!run || *run >= texts_.size()) return false;
   const std::string_view text = line.substr(second + 1);
   // Made again, so that a line counts only in exactly its written form.
-  if (text.empty() || this->line(run, text) != fmt::format("{}\n", line)) return false;
-  if (texts_[run].empty()) ++finished_;
-  texts_[run] = text;
+  if (text.empty() || this->line(*run, text) != fmt::format("{}\n", line)) return false;
+  if (texts_[*run].empty()) ++finished_;
+  texts_[*run] = text;
   return true;
 }
 

@@ -68,11 +68,6 @@ class SweepLog {
   std::int64_t size_ = 0;
 };
 
-// Writes a file completely or not at all: under a temporary name (NAME.tmp), then renamed.
-// Unlike write_file() it uses a name that the next start knows as the sweep's own and removes, and
-// its errors state that the finished runs are kept.
-void replace_file(const std::filesystem::path& path, std::string_view content);
-
 class SweepFolder {
  public:
   // `manifest`: JSON, of which every member counts. `restart`: removes another sweep in the folder.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "recording/version.h"
 #include "reports/figures/figure_parts.h"
 
 namespace simbench::reports {
@@ -61,9 +60,7 @@ Figure new_sweep_figure(const SweepPlan& plan, const std::string& id, const std:
                    .derivation = plan.derivation,
                    .pipeline = plan.pipelines.size() == 1 ? plan.pipelines.front() : "",
                    .first_seed = plan.first_seed,
-                   .seeds = plan.seeds,
-                   .version = std::string(version()),
-                   .commit = std::string(commit())};
+                   .seeds = plan.seeds};
   figure.caption =
       fmt::format("{}, {} each.", counted(plan.points(), "point"), counted(plan.seeds, "seed"));
   return figure;
@@ -72,8 +69,7 @@ Figure new_sweep_figure(const SweepPlan& plan, const std::string& id, const std:
 FigureSeries* add_curve(FigurePanel& panel, const std::string& label, Mark mark) {
   if (panel.series.size() == kMostCurves) return nullptr;
   const int colour = static_cast<int>(panel.series.size());
-  return &panel.series.emplace_back(
-      FigureSeries{.label = label, .mark = mark, .x = {}, .y = {}, .colour = colour});
+  return &panel.series.emplace_back(FigureSeries{.label = label, .mark = mark, .colour = colour});
 }
 
 void use_log_scale_if_wide(FigurePanel& panel) {

@@ -1,10 +1,7 @@
-#include "reports/sweep/sweep_ranking.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "evaluation/scoring/metrics.h"
@@ -12,6 +9,7 @@
 #include "reports/figures/figure_parts.h"
 #include "reports/results/metric_columns.h"
 #include "reports/sweep/sweep_parts.h"
+#include "reports/sweep/sweep_report.h"
 #include "reports/text/metric_text.h"
 
 namespace simbench::reports {
@@ -130,10 +128,8 @@ Figure packets_figure(const SweepPlan& plan, const std::vector<ResponseRow>& row
       // Nothing sent has no place on a logarithmic axis.
       if (!(packets_per_s > 0)) continue;
       if (!series->x.empty() && series->x.back() == packets_per_s) continue;
-      series->x.push_back(packets_per_s);
-      series->y.push_back(row->of(metric.sweep).median);
-      series->low.push_back(row->of(metric.sweep).p05);
-      series->high.push_back(row->of(metric.sweep).p95);
+      series->add(packets_per_s, row->of(metric.sweep).median, row->of(metric.sweep).p05,
+                  row->of(metric.sweep).p95);
     }
     if (series->x.empty()) panel.series.pop_back();
   }

@@ -1,11 +1,9 @@
 #include "reports/sweep/sweep_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -14,13 +12,15 @@
 #include <utility>
 
 #include "evaluation/statistics/statistics.h"
+#include "recording/number_in.h"
 #include "recording/version.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/results/csv.h"
-#include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
 #include "reports/results/metric_columns.h"
 #include "reports/sweep/sweep_parts.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
@@ -46,16 +46,6 @@ std::string run_cells(const SweepPlan& plan, const SweepRun& run) {
   std::string cells;
   for (const std::string& value : plan.values(run.point)) cells.append(csv_cell(value)).append(",");
   return cells + fmt::format("{},{}", csv_cell(plan.pipelines[run.pipeline]), run.seed);
-}
-
-// The ends of lines: of a scenario that is changed at all points, with a column of its changes.
-std::string changed_header(const SweepPlan& plan) {
-  return plan.derivation.changes.empty() ? "\n" : ",changed\n";
-}
-
-std::string changed_cell(const SweepPlan& plan) {
-  const std::string changed = scenarios::changed_text(plan.derivation);
-  return changed.empty() ? "\n" : fmt::format(",{}\n", csv_cell(changed));
 }
 
 // A value of an axis: a number where it is one, else a word.
@@ -114,16 +104,15 @@ XAxis x_axis(const SweepPlan& plan) {
   XAxis x;
   x.label = axis.pointers.front();
   for (const std::string& text : axis.values.front()) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || stop != text.data() + text.size()) {
+    const std::optional<double> value = number_in<double>(text);
+    if (!value) {
       x.categories = axis.values.front();
       x.at.resize(axis.steps());
       std::iota(x.at.begin(), x.at.end(), 0.0);
       x.label += " (in the order given)";
       return x;
     }
-    x.at.push_back(value);
+    x.at.push_back(*value);
   }
   return x;
 }
@@ -153,8 +142,7 @@ std::string axis_label(const SweepPlan& plan, const Metric& metric) {
 
 // A point of a curve, with its band; shares are of all seeds together.
 void add_response(const ResponseRow& row, const Metric& metric, double at, FigureSeries& series) {
-  series.x.push_back(at);
-  series.y.push_back(shown_value(metric, row.value(metric)));
+  series.add(at, shown_value(metric, row.value(metric)));
   if (metric.is_share()) return;
   series.low.push_back(shown_value(metric, row.of(metric.sweep).p05));
   series.high.push_back(shown_value(metric, row.of(metric.sweep).p95));
@@ -229,24 +217,24 @@ std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scor
   for (const evaluation::Metric* metric : evaluation::sweep_metrics(plan.kind)) {
     csv.append(",").append(metric->sweep);
   }
-  csv += changed_header(plan);
-  const std::string changed = changed_cell(plan);
+  const LineEnds ends(plan.derivation);
+  csv += ends.header;
   for (std::size_t index = 0; index < scores.size(); ++index) {
     csv += run_cells(plan, plan.run(index));
     for (const double value : scores[index].values) csv.append(",").append(csv_cell(value));
-    csv += changed;
+    csv += ends.line;
   }
   return csv;
 }
 
 std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
-  std::string csv = run_header(plan) + ",host,host_error_ms" + changed_header(plan);
-  const std::string changed = changed_cell(plan);
+  const LineEnds ends(plan.derivation);
+  std::string csv = run_header(plan) + ",host,host_error_ms" + ends.header;
   for (std::size_t index = 0; index < scores.size(); ++index) {
     const std::string cells = run_cells(plan, plan.run(index));
     const std::vector<double>& errors = scores[index].host_errors_ms;
     for (std::size_t host = 0; host < errors.size(); ++host) {
-      csv += fmt::format("{},{},{}{}", cells, host, csv_cell(errors[host]), changed);
+      csv += fmt::format("{},{},{}{}", cells, host, csv_cell(errors[host]), ends.line);
     }
   }
   return csv;
@@ -380,10 +368,8 @@ Figure host_order_figure(const SweepPlan& plan, const std::vector<ResponseRow>& 
     FigureSeries* series = add_curve(panel, label, Mark::kMarkedLine);
     if (series == nullptr) break;
     for (std::size_t host = 1; host < row.hosts.size(); ++host) {
-      series->x.push_back(static_cast<double>(host));
-      series->y.push_back(row.hosts[host].median);
-      series->low.push_back(row.hosts[host].p05);
-      series->high.push_back(row.hosts[host].p95);
+      series->add(static_cast<double>(host), row.hosts[host].median, row.hosts[host].p05,
+                  row.hosts[host].p95);
     }
   }
   use_log_scale_if_wide(panel);
@@ -402,8 +388,7 @@ Figure seeds_needed_figure(const SweepPlan& plan, const std::vector<ResponseRow>
     for (std::size_t seeds = 8; seeds <= plan.seeds; seeds += std::max<std::size_t>(1, seeds / 8)) {
       const auto interval =
           evaluation::median_interval(row.of("amd_ms").values, static_cast<std::int64_t>(seeds));
-      series->x.push_back(static_cast<double>(seeds));
-      series->y.push_back(interval.relative * 100);
+      series->add(static_cast<double>(seeds), interval.relative * 100);
     }
   }
   use_log_scale_if_wide(panel);

@@ -1,13 +1,21 @@
-// The results of a sweep: blocks for people, CSV for scripts, figures.
+// The results of a sweep: the answer and blocks for people, CSV for scripts, figures.
+//
+// Where pipelines compete, the metric is what a leaderboard sorts by: of captures the absolute
+// error, of the hosts' clocks alone the spread.
+//
+//   document.head = paragraphs(sweep_answer(plan, rows));
 #ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
 #define SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
 
 #include <string>
 #include <vector>
 
+#include "evaluation/scoring/metrics.h"
+#include "evaluation/sweep/ranking.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/figures/figure.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -18,8 +26,8 @@ std::string sweep_manifest(const evaluation::SweepPlan& plan, const std::string&
 
 // sweep.csv, one line for each point, pipeline and seed: the swept values under their JSON
 // pointers, pipeline, seed, and the columns of evaluation::sweep_metrics(). Numbers are the
-// shortest that read back as the same double; a value that does not exist is an empty cell. Of a
-// scenario that is changed at all points, a last column: changed.
+// shortest that read back as the same double; a value that does not exist is an empty cell. A
+// last column has the changes of a scenario that is changed at all points.
 std::string sweep_csv(const evaluation::SweepPlan& plan,
                       const std::vector<evaluation::SweepScore>& scores);
 
@@ -27,6 +35,35 @@ std::string sweep_csv(const evaluation::SweepPlan& plan,
 // error_ms, its mean clock error.
 std::string sweep_hosts_csv(const evaluation::SweepPlan& plan,
                             const std::vector<evaluation::SweepScore>& scores);
+
+// Which pipeline that a rig can run is best at how many points and between which values, where two
+// change places, which swept parameter matters most, whether its sets can be trusted, and how
+// certain that is. Pipelines that need the truth, and references, are left out
+// (evaluation/answer/answer.h). `rows`, here and below: response(plan, ...). Throws what
+// scenarios::load_scenario_text() throws of the plan's scenario.
+AnswerText sweep_answer(const evaluation::SweepPlan& plan,
+                        const std::vector<evaluation::ResponseRow>& rows);
+
+// What pipelines compete for.
+const evaluation::Metric& ranked_metric(const evaluation::SweepPlan& plan);
+
+// A point by the first pointer of each axis; what goes in lockstep with it is in the table.
+std::string leading_text(const evaluation::SweepPlan& plan, std::size_t point);
+
+// "chrony is better than ntp up to /hosts/count=2, worse from /hosts/count=4 on."
+std::string flip_text(const evaluation::SweepPlan& plan, const evaluation::RankingFlip& flip);
+
+// The order of the pipelines at each point, and between which values of the first axis it flips
+// (evaluation/sweep/ranking.h).
+Block ranking_block(const evaluation::SweepPlan& plan,
+                    const std::vector<evaluation::ResponseRow>& rows);
+
+// The metric beside the packets per second that all hosts together sent, pipeline by pipeline; the
+// same as curves.
+Block packets_block(const evaluation::SweepPlan& plan,
+                    const std::vector<evaluation::ResponseRow>& rows);
+Figure packets_figure(const evaluation::SweepPlan& plan,
+                      const std::vector<evaluation::ResponseRow>& rows);
 
 // The response of each pipeline at each point: the metrics with TablePlaces::response, the first
 // one with its band.

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 

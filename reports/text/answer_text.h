@@ -17,7 +17,7 @@
 
 namespace simbench::reports {
 
-// Of fewer seeds an answer says that they say little about other worlds: not even from the least to
+// An answer says of fewer seeds that they say little about other worlds: not even from the least to
 // the largest of them do they hold the median with 95 %.
 inline constexpr std::size_t kFewestSeeds = 6;
 

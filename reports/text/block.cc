@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/split.hpp>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "recording/collected.h"
 #include "recording/text_fields.h"
-#include "reports/text/html_text.h"
-#include "reports/text/latex_text.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/plain_text.h"
 
 namespace simbench::reports {
@@ -117,9 +118,7 @@ std::string latex_table(const Table& raw, const std::string& caption) {
   for (const Column& column : table.columns) columns += column.align == Align::kLeft ? 'l' : 'r';
   std::string rows;
   for (const std::vector<std::string>& row : table.rows) {
-    std::vector<std::string> cells;
-    cells.reserve(row.size());
-    for (const std::string& cell : row) cells.push_back(latex_cell(cell));
+    const std::vector<std::string> cells = collected(row, latex_cell);
     rows += latex_row(cells);
   }
   const std::string stated =
@@ -173,6 +172,10 @@ std::string html_row(const Table& table, std::size_t row) {
 }
 
 }  // namespace
+
+void add(std::optional<Block> block, std::vector<Block>& blocks) {
+  if (block) blocks.push_back(std::move(*block));
+}
 
 void Table::add(std::vector<std::string> cells) {
   SIMBENCH_ASSERT(cells.size() == columns.size(), "a row has a cell for every column");

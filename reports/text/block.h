@@ -67,9 +67,19 @@ struct Field {
 // The column of a row's pipeline, a key of most tables.
 template <class Row>
 Field<Row> pipeline_field() {
-  return {{"pipeline", Align::kLeft}, [](const Row& row) { return row.pipeline; }};
+  return {{"pipeline", Align::kLeft}, &Row::pipeline};
 }
 
+template <class Subject>
+const Subject& subject_of(const Subject& subject) {
+  return subject;
+}
+template <class Subject>
+const Subject& subject_of(const Subject* subject) {
+  return *subject;
+}
+
+// `subjects`: a list of them, or of their addresses.
 template <class Subject, class Subjects>
 Table table_of(const std::vector<Field<Subject>>& fields, const Subjects& subjects,
                std::size_t keys = 1) {
@@ -77,7 +87,8 @@ Table table_of(const std::vector<Field<Subject>>& fields, const Subjects& subjec
   columns.reserve(fields.size());
   for (const Field<Subject>& field : fields) columns.push_back(field.column);
   Table table(std::move(columns), keys);
-  for (const Subject& subject : subjects) {
+  for (const auto& each : subjects) {
+    const Subject& subject = subject_of<Subject>(each);
     std::vector<std::string> cells;
     cells.reserve(fields.size());
     for (const Field<Subject>& field : fields) cells.push_back(field.cell(subject));
@@ -97,6 +108,9 @@ struct Block {
   std::vector<std::string> items{};  // a list
   bool is_warning = false;           // HTML sets it apart
 };
+
+// Adds a block that there may be.
+void add(std::optional<Block> block, std::vector<Block>& blocks);
 
 struct Document {
   std::string title{};

@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "evaluation/statistics/statistics.h"
-#include "reports/text/file_content.h"
+#include "recording/version.h"
+#include "reports/text/output_file.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -131,6 +132,10 @@ void JsonNode::check_schema_version(int newest) const {
     version.refuse(fmt::format("at most {}; a newer simbench wrote this, use that one", newest));
   }
   if (found < 1) version.refuse(fmt::format("1 to {}", newest));
+}
+
+Json new_document(int schema_version) {
+  return {{"schema_version", schema_version}, {"version", version()}, {"commit", commit()}};
 }
 
 Json band_json(const evaluation::Series& series) {

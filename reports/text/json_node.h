@@ -66,6 +66,9 @@ class JsonNode {
 // For writing: keeps members in order; NaN becomes null.
 using Json = nlohmann::ordered_json;
 
+// The first members of a document: "schema_version", and "version" and "commit" of this program.
+Json new_document(int schema_version = 1);
+
 // {"median", "p05", "p95"}; series_json() has "values" in seed order too.
 Json band_json(const evaluation::Series& series);
 Json series_json(const evaluation::Series& series);

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "algorithms/ports/assert.h"
+#include "recording/number_in.h"
+#include "scenarios/document.h"
+#include "scenarios/input_file.h"
 
 namespace simbench::reports {
 namespace {
@@ -51,10 +54,8 @@ fs::path unfinished_path(const fs::path& path, const std::string& process) {
 }
 
 bool is_dead(const std::string& process) {
-  pid_t id = 0;
-  const char* end = process.data() + process.size();
-  const auto [stop, error] = std::from_chars(process.data(), end, id);
-  return error == std::errc() && stop == end && id > 0 && ::kill(id, 0) != 0 && errno == ESRCH;
+  const std::optional<pid_t> id = number_in<pid_t>(process);
+  return id && *id > 0 && ::kill(*id, 0) != 0 && errno == ESRCH;
 }
 
 // Removes what killed processes have left of `path`. An earlier result that such a one had put
@@ -149,6 +150,17 @@ void check_replaceable(const fs::path& folder, const std::vector<std::string>& m
 
 void fail_output(const fs::path& folder, const std::string& problem) {
   throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));
+}
+
+std::optional<std::string> content_of(const std::filesystem::path& path) {
+  constexpr std::size_t kLargest = std::size_t{512} << 20;
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return std::nullopt;
+  try {
+    return file_content(path.string(), kLargest);
+  } catch (const FileError& error) {
+    scenarios::fail_to_read(scenarios::shown_text(path.string()), error.what());
+  }
 }
 
 std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }

@@ -68,6 +68,10 @@ class OutputFile {
 // Makes, writes and publishes a file.
 void write_file(const std::string& path, std::string_view content);
 
+// The whole content of a file of results. Nothing if there is no such file; errno has the reason.
+// Throws scenarios::InputError for a file that cannot be read, and for one of more than 512 MiB.
+std::optional<std::string> content_of(const std::filesystem::path& path);
+
 // Returns the system's reason for the last failed call.
 std::string system_reason();
 

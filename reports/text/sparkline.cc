@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/counted.h"
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 #include "reports/text/time_text.h"
 
 namespace simbench::reports {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "recording/version.h"
-#include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
 #include "reports/text/json_node.h"
 #include "reports/timeline/trace.h"
 #include "reports/timeline/trace_events.h"

@@ -20,9 +20,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "reports/timeline/trace.h"
@@ -31,7 +29,6 @@ namespace simbench::reports {
 
 inline constexpr Nanoseconds kShownPulse = std::chrono::microseconds(100);
 inline constexpr Nanoseconds kShownMessage = std::chrono::microseconds(10);
-inline constexpr Nanoseconds kLongestAnswer = std::chrono::milliseconds(50);
 
 enum class TracePhase : char {
   kSlice = 'X',
@@ -84,82 +81,6 @@ struct TraceTimeline {
 };
 
 TraceTimeline trace_timeline(const Trace& trace);
-
-// Builds the tracks of a timeline from slices, marks and arrows.
-//
-// A track is identified by its key; lay_out() moves overlapping slices to further tracks of the
-// same name. An arrow's point is on the track of the slice that it touches.
-//
-//   TraceTracks tracks;
-//   const std::size_t pulse = tracks.slice(trigger_track(), TraceWhat::kPulse, 0, begin, end);
-//   tracks.point(TracePhase::kArrowBegin, TraceWhat::kFrameArrow, 7, pulse, begin);
-//   TraceTimeline timeline = tracks.lay_out();
-
-enum class TrackKind : std::uint8_t {
-  kTrigger,
-  kClock,
-  kGathering,
-  kExposure,
-  kUsb,
-  kHostStack,
-  kChannel,
-};
-
-// In the order of display.
-struct TrackKey {
-  std::uint32_t process = 0;
-  std::uint8_t group = 0;   // cameras' tracks are together, by camera
-  std::uint32_t place = 0;  // camera or peer
-  StreamKind stream = StreamKind::kDepth;
-  TrackKind kind = TrackKind::kTrigger;
-  friend bool operator<(const TrackKey& a, const TrackKey& b) {
-    return std::tie(a.process, a.group, a.place, a.stream, a.kind) <
-           std::tie(b.process, b.group, b.place, b.stream, b.kind);
-  }
-};
-
-TrackKey trigger_track();
-TrackKey host_track(std::uint32_t host, TrackKind kind);
-TrackKey frame_track(const ObservedFrame& frame, TrackKind kind);
-TrackKey channel_track(std::uint32_t host, std::uint32_t peer);
-
-class TraceTracks {
- public:
-  using EventIndex = std::size_t;
-
-  // Adds a slice, of at least 1 ns.
-  EventIndex slice(const TrackKey& track, TraceWhat what, std::uint32_t subject, TrueTime begin,
-                   TrueTime end);
-  // Adds a counter or an instant.
-  void mark(const TrackKey& track, TracePhase phase, TraceWhat what, std::uint32_t subject,
-            TrueTime at);
-  // Adds a point of an arrow on a slice, as near to `at` as the slice reaches.
-  void point(TracePhase phase, TraceWhat what, std::uint64_t arrow, EventIndex slice, TrueTime at);
-
-  const TraceEvent& event(EventIndex index) const { return timeline_.events[index]; }
-
-  // Returns all in order, without the names of the processes. Call once.
-  TraceTimeline lay_out();
-
- private:
-  struct Point {
-    EventIndex event;
-    EventIndex slice;
-  };
-  struct BaseTrack {
-    std::vector<EventIndex> slices;
-    std::vector<EventIndex> marks;
-  };
-
-  EventIndex add(const TraceEvent& event);
-  void lay_out(const TrackKey& key, BaseTrack& base);
-  void shorten_nominal(const std::vector<EventIndex>& slices);
-  void sort();
-
-  TraceTimeline timeline_;
-  std::map<TrackKey, BaseTrack> tracks_;
-  std::vector<Point> points_;
-};
 
 }  // namespace simbench::reports
 

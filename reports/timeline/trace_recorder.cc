@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "reports/text/number_text.h"
+#include "recording/counted.h"
 
 namespace simbench::reports {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/clock_run/clock_curves.h"
 #include "evaluation/clock_run/clock_evaluation.h"
+#include "evaluation/clock_run/clock_score.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::reports {

@@ -9,7 +9,6 @@
 #include <functional>
 #include <vector>
 
-#include "evaluation/clock_run/clock_curves.h"
 #include "tests/nonempty.h"
 
 namespace simbench::evaluation {

@@ -1,8 +1,7 @@
-#include "reports/advice/rare_report.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "reports/advice/advice_report.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {

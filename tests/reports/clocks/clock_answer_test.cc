@@ -1,7 +1,6 @@
-#include "reports/clocks/clock_answer.h"
-
 #include <gmock/gmock.h>
 
+#include "reports/clocks/clock_report.h"
 #include "tests/reports/sample_clocks.h"
 
 namespace simbench::reports {

@@ -9,13 +9,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(XmlText, EscapesWhatXmlReserves) {
-  EXPECT_EQ(xml_text("a<b & \"c\">d"), "a&lt;b &amp; &quot;c&quot;&gt;d");
-  EXPECT_EQ(xml_text(std::string("a\x01z\n", 4)), "a?z\n");
-  EXPECT_EQ(xml_text("\xff\xfe"), "??");
-  EXPECT_EQ(xml_text("50 µs"), "50 µs");
-}
-
 TEST(GateJunit, HasACasePerMetricAndAFailureWithItsCommands) {
   Baseline baseline = make_baseline(sample_archive("before"));
   baseline.path = "b.json";

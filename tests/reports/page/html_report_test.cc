@@ -11,7 +11,7 @@
 
 #include "reports/page/html_page.h"
 #include "reports/results/results_document.h"
-#include "reports/text/html_text.h"
+#include "reports/text/escaped_text.h"
 #include "tests/reports/sample_figures.h"
 #include "tests/reports/sample_results.h"
 

@@ -1,9 +1,8 @@
-#include "reports/reconstruction/reconstruction_answer.h"
-
 #include <gmock/gmock.h>
 
 #include <string>
 
+#include "reports/reconstruction/reconstruction_document.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "reports/reconstruction/reconstruction_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/plain_text.h"
 #include "tests/reports/sample_reconstruction.h"

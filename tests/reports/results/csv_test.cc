@@ -143,13 +143,5 @@ TEST(ResultsCsv, TidyHasALineForEachSeedPipelineAndMetric) {
   EXPECT_TRUE(tidy_csv(results).starts_with("scenario,pipeline,seed,metric,unit,value,changed\n"));
 }
 
-TEST(ResultsCsv, CellsAreQuotedWhereTheyMustBe) {
-  EXPECT_EQ(csv_cell("plain"), "plain");
-  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
-  EXPECT_EQ(csv_cell("say \"hi\""), "\"say \"\"hi\"\"\"");
-  EXPECT_EQ(csv_cell(kNaN), "");
-  EXPECT_EQ(csv_cell(0.1 + 0.2), "0.30000000000000004");
-}
-
 }  // namespace
 }  // namespace simbench::reports

@@ -1,4 +1,3 @@
-#include "reports/results/published_figures_block.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-#include "reports/results/published_figures_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

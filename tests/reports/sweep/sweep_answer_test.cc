@@ -1,5 +1,3 @@
-#include "reports/sweep/sweep_answer.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "reports/page/sweep_page.h"
+#include "reports/sweep/sweep_report.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {

@@ -1,5 +1,3 @@
-#include "reports/sweep/sweep_ranking.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/sweep/sweep_report.h"
 #include "reports/text/plain_text.h"
 
 namespace simbench::reports {

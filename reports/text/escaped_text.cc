@@ -1,0 +1,143 @@
+#include "reports/text/escaped_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/ports/assert.h"
+#include "scenarios/document.h"
+
+namespace simbench::reports {
+namespace {
+
+// What stands for the beginning of a text; characters of several bytes are texts.
+constexpr std::pair<std::string_view, std::string_view> kSpecial[] = {{"\\", "\\textbackslash{}"},
+                                                                      {"~", "\\textasciitilde{}"},
+                                                                      {"^", "\\textasciicircum{}"},
+                                                                      {"<", "\\textless{}"},
+                                                                      {">", "\\textgreater{}"},
+                                                                      {"|", "\\textbar{}"},
+                                                                      {"\"", "\\textquotedbl{}"},
+                                                                      {"`", "\\textasciigrave{}"},
+                                                                      {"→", "$\\rightarrow$"},
+                                                                      {"±", "$\\pm$"},
+                                                                      {"{", "\\{"},
+                                                                      {"}", "\\}"},
+                                                                      {"$", "\\$"},
+                                                                      {"&", "\\&"},
+                                                                      {"#", "\\#"},
+                                                                      {"%", "\\%"},
+                                                                      {"_", "\\_"}};
+
+const std::pair<std::string_view, std::string_view>* special_at(std::string_view text) {
+  for (const auto& special : kSpecial) {
+    if (text.starts_with(special.first)) return &special;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string html_escaped(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string xml_text(std::string_view text) {
+  const std::string whole(text);
+  std::string escaped;
+  for (const char letter : scenarios::is_utf8(whole) ? whole : std::string(text.size(), '?')) {
+    const bool is_control = static_cast<unsigned char>(letter) < ' ' && letter != '\n';
+    if (letter == '&') {
+      escaped += "&amp;";
+    } else if (letter == '<') {
+      escaped += "&lt;";
+    } else if (letter == '>') {
+      escaped += "&gt;";
+    } else if (letter == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += is_control ? '?' : letter;
+    }
+  }
+  return escaped;
+}
+
+std::string latex_escaped(std::string_view text) {
+  std::string escaped;
+  while (!text.empty()) {
+    if (const auto* special = special_at(text)) {
+      escaped += special->second;
+      text.remove_prefix(special->first.size());
+    } else {
+      escaped += text.front();
+      text.remove_prefix(1);
+    }
+  }
+  return escaped;
+}
+
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+std::string script_safe(std::string_view json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string filled(std::string_view page,
+                   const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string out;
+  while (true) {
+    const std::size_t open = page.find("{{");
+    out += page.substr(0, open);
+    if (open == std::string_view::npos) return out;
+    const std::size_t close = page.find("}}", open);
+    SIMBENCH_ASSERT(close != std::string_view::npos, "an open {{");
+    const std::string_view name = page.substr(open + 2, close - open - 2);
+    const auto value = std::find_if(values.begin(), values.end(),
+                                    [&](const auto& known) { return known.first == name; });
+    SIMBENCH_ASSERT(value != values.end(), "a name of the page without a value");
+    out += value->second;
+    page.remove_prefix(close + 2);
+  }
+}
+
+}  // namespace simbench::reports

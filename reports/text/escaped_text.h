@@ -1,0 +1,40 @@
+// Unchecked text (names, paths, messages) as each format writes it.
+//
+//   html_escaped("a < b & \"c\"")   "a &lt; b &amp; &quot;c&quot;", for content and attributes
+//   latex_escaped("50 %_a")         "50 \%\_a"
+//   csv_cell("a,b")                 "\"a,b\""
+#ifndef SIMBENCH_REPORTS_TEXT_ESCAPED_TEXT_H_
+#define SIMBENCH_REPORTS_TEXT_ESCAPED_TEXT_H_
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace simbench::reports {
+
+std::string html_escaped(std::string_view text);
+
+// For XML 1.0: characters that it cannot hold become question marks.
+std::string xml_text(std::string_view text);
+
+// Text with the special characters of LaTeX escaped. Every other character stays, in UTF-8, which
+// LaTeX reads since 2018.
+std::string latex_escaped(std::string_view text);
+
+// A cell of a CSV, quoted where necessary (RFC 4180); what is not finite is empty.
+std::string csv_cell(std::string_view text);
+std::string csv_cell(double value);
+
+// JSON in which no HTML parser finds the end of a script: '<' stands in strings only, where an
+// escape means the same.
+std::string script_safe(std::string_view json);
+
+// Replaces each {{name}} of a template by its value, which is not searched again. A name without a
+// value is a programming error.
+std::string filled(std::string_view page,
+                   const std::vector<std::pair<std::string_view, std::string>>& values);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_TEXT_ESCAPED_TEXT_H_

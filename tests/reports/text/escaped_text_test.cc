@@ -1,0 +1,63 @@
+// Nothing that comes from outside may become markup or script.
+#include "reports/text/escaped_text.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace simbench::reports {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(HtmlText, EscapesWhatHtmlReads) {
+  EXPECT_EQ(html_escaped("plain, 5-95 % µs"), "plain, 5-95 % µs");
+  EXPECT_EQ(html_escaped("a < b && c > \"d\" or 'e'"),
+            "a &lt; b &amp;&amp; c &gt; &quot;d&quot; or &#39;e&#39;");
+}
+
+TEST(HtmlText, AScriptCannotBeEndedByItsData) {
+  const nlohmann::json data = {{"name", "</script><!--<script>"}, {"number", 1}};
+  const std::string safe = script_safe(data.dump());
+  EXPECT_THAT(safe, Not(HasSubstr("<")));
+  EXPECT_EQ(nlohmann::json::parse(safe), data);
+}
+
+TEST(HtmlText, FillsATemplateOnce) {
+  EXPECT_EQ(filled("a{{x}}b{{y}}{{x}}", {{"x", "1"}, {"y", "{{x}}"}}), "a1b{{x}}1");
+  EXPECT_EQ(filled("no names", {}), "no names");
+}
+
+TEST(HtmlText, ANameWithoutAValueIsAProgrammingError) {
+  EXPECT_DEATH(filled("{{missing}}", {}), "without a value");
+}
+
+TEST(LatexText, SpecialCharactersAreWrittenOut) {
+  EXPECT_EQ(latex_escaped("5-95 %, a_b & $c #1 {d}"), "5-95 \\%, a\\_b \\& \\$c \\#1 \\{d\\}");
+  EXPECT_EQ(latex_escaped("\\x1b"), "\\textbackslash{}x1b");
+  EXPECT_EQ(latex_escaped("~^<>|"),
+            "\\textasciitilde{}\\textasciicircum{}\\textless{}\\textgreater{}\\textbar{}");
+  EXPECT_EQ(latex_escaped("45 → 30"), "45 $\\rightarrow$ 30");
+  EXPECT_EQ(latex_escaped("Zürich"), "Zürich");
+  EXPECT_EQ(latex_escaped(""), "");
+}
+
+TEST(XmlText, EscapesWhatXmlReserves) {
+  EXPECT_EQ(xml_text("a<b & \"c\">d"), "a&lt;b &amp; &quot;c&quot;&gt;d");
+  EXPECT_EQ(xml_text(std::string("a\x01z\n", 4)), "a?z\n");
+  EXPECT_EQ(xml_text("\xff\xfe"), "??");
+  EXPECT_EQ(xml_text("50 µs"), "50 µs");
+}
+
+TEST(CsvCell, IsQuotedWhereItMustBe) {
+  EXPECT_EQ(csv_cell("plain"), "plain");
+  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_cell("say \"hi\""), "\"say \"\"hi\"\"\"");
+  EXPECT_EQ(csv_cell(NAN), "");
+  EXPECT_EQ(csv_cell(0.1 + 0.2), "0.30000000000000004");
+}
+
+}  // namespace
+}  // namespace simbench::reports
