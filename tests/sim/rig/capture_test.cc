@@ -140,8 +140,9 @@ TEST(Capture, AnOverloadedBusLosesWhatItCannotCarry) {
   const double offered = 3.0 * 945;
   // A camera offers 45 x 0.7 = 31.5 MB/s. The bus carries two thirds of what is asked of it.
   for (const auto& [sharing, bandwidth_mb_per_s] :
-       {std::pair{UsbSharing::kFifo, 63.0}, std::pair{UsbSharing::kFair, 63.0},
-        std::pair{UsbSharing::kDedicated, 21.0}}) {
+       {std::pair{scenarios::UsbSharing::kFifo, 63.0},
+        std::pair{scenarios::UsbSharing::kFair, 63.0},
+        std::pair{scenarios::UsbSharing::kDedicated, 21.0}}) {
     s.usb.sharing = sharing;
     s.usb.bandwidth_mb_per_s = bandwidth_mb_per_s;
     EXPECT_NEAR(static_cast<double>(capture(s).frames.size()) / offered, 2.0 / 3, 0.01)
