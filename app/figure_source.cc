@@ -24,6 +24,7 @@
 #include "reports/figures/result_figures.h"
 #include "reports/figures/run_figures.h"
 #include "reports/figures/seed_figures.h"
+#include "reports/results/results_answer.h"
 #include "scenarios/loader.h"
 
 namespace simbench::app {
@@ -239,6 +240,14 @@ Scenario scenario_of(const Archive& archive) {
   return scenario;
 }
 
+std::string files_note(const Archive& archive) {
+  return fmt::format(
+      "{} is of files, whose capture cannot be simulated: figures of frames are left out; "
+      "`simbench "
+      "figure NAME FILES -o FILE` draws them from the files themselves",
+      archive.path);
+}
+
 Archive archive_without_runs(const Scenario& scenario, const std::string& path) {
   Archive archive;
   archive.path = path;
@@ -268,7 +277,9 @@ ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
   if (has_manifest && !has_seed_details(archive)) reports::read_seed_details(archive);
   FigureMaker maker(archive, chosen, progress);
   maker.add_result_figures();
-  if (has_manifest) {
+  if (reports::is_of_files(archive)) {
+    maker.note(files_note(archive));
+  } else if (has_manifest) {
     maker.add_run_figures(scenario_of(archive));
   } else {
     maker.note(
@@ -346,7 +357,8 @@ std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
   first.runs = first.options.seeds.size() * detail.pipelines.size();
   std::vector<Step> steps = {first};
   const std::uint64_t budget_seeds = detail.budget_seeds.value_or(0);
-  if (budget_seeds == 0 || detail.pipelines.empty()) return steps;
+  const bool has_worlds = !reports::is_of_files(archive);
+  if (budget_seeds == 0 || detail.pipelines.empty() || !has_worlds) return steps;
   Step budgets;
   budgets.options.pipelines = detail.pipelines;
   budgets.options.budget_seeds = budget_seeds;
@@ -429,7 +441,10 @@ ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
   reports::read_seed_details(reported.archive);
   try {
     draw(reported, steps, progress);
-    reported.answer = run_answer(reported.archive.results, scenario_of(reported.archive), nullptr);
+    reported.answer =
+        reports::is_of_files(reported.archive)
+            ? reports::results_answer(reported.archive.results, evaluation::RankedBy::kAmd, nullptr)
+            : run_answer(reported.archive.results, scenario_of(reported.archive), nullptr);
     shorten(reported.notes);
     const std::string other = version_note(reported.archive);
     if (!other.empty()) reported.notes.insert(reported.notes.begin(), other);

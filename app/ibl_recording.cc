@@ -172,6 +172,10 @@ std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std
   return frames;
 }
 
+bool is_ibl_recording(const std::string& path) {
+  return path.ends_with(".timestamps.ssv") || path.ends_with(".frameData.bin");
+}
+
 std::vector<StampedFrame> read_ibl_recording(const std::string& path) {
   const bool timestamps = path.ends_with(".ssv");
   if (!timestamps && !path.ends_with(".bin")) {

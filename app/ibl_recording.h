@@ -1,5 +1,5 @@
 // Camera recordings of the International Brain Laboratory's rigs (Point Grey USB3 cameras), read
-// for `simbench replay`.
+// as a stream of stamps.
 //
 // Two kinds of file:
 //   *.timestamps.ssv   text: ISO local time with seven fractional digits and UTC offset (arrival at
@@ -22,6 +22,9 @@
 #include "recording/recorded_streams.h"
 
 namespace simbench::app {
+
+// Whether the name is that of such a file.
+bool is_ibl_recording(const std::string& path);
 
 // The file's name tells its kind. Sensor stamps count from the camera clock's last zero before the
 // first frame, arrivals from the first frame. Frames without a counter are numbered from 0. Throws

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 
-#include "recording/camera_streams.h"
+#include "app/ibl_recording.h"
+#include "recording/recorded_stream_sink.h"
 #include "recording/recording_folder.h"
 #include "scenarios/loader.h"
 
@@ -23,7 +25,7 @@ RecordedStreams streams_of_folder(const std::string& path) {
     found.notes.push_back(fmt::format("{}: of {} captures that of {}, seed {}", path,
                                       folder.captures().size(), capture.pipeline, capture.seed));
   }
-  CameraStreamSink sink(folder.description());
+  RecordedStreamSink sink(folder.description());
   folder.play(0, sink);
   found.streams = sink.take();
   return found;
@@ -46,7 +48,23 @@ std::optional<std::string> recording_folder_of(const std::vector<std::string>& i
 RecordedStreams recorded_streams(const std::vector<std::string>& inputs,
                                  const bags::FileOptions& options, const ReadProgress& progress) {
   if (const auto folder = recording_folder_of(inputs)) return streams_of_folder(*folder);
-  return bags::read_recorded_files(inputs, options, progress);
+  std::vector<std::string> others = inputs;
+  std::erase_if(others, is_ibl_recording);
+  RecordedStreams found;
+  if (!others.empty()) found = bags::read_recorded_files(others, options, progress);
+  if (others.size() == inputs.size()) return found;
+  check_given_once(inputs);
+  const std::vector<std::string> names = camera_names(inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (!is_ibl_recording(inputs[i])) continue;
+    RecordedStream& stream = found.streams.emplace_back();
+    stream.camera = stream.host = names[i];
+    stream.stream = "Color 0";
+    stream.counted = !inputs[i].ends_with(".ssv");
+    stream.frames = read_ibl_recording(inputs[i]);
+    stream.origin.file = inputs[i];
+  }
+  return found;
 }
 
 }  // namespace simbench::app

@@ -15,8 +15,9 @@
 namespace simbench::app {
 
 // `inputs`: one recording folder, whose first capture it is, or files as bags/recorded_files.h
-// reads them (folders of rosbag2 too). The notes are for the user. Throws scenarios::InputError (a
-// folder among several inputs or without a capture), RecordingFolderError, RecordedFileError.
+// reads them (folders of rosbag2 too) and IBL's (app/ibl_recording.h). The notes are for the user.
+// Throws scenarios::InputError (a folder among several inputs or without a capture),
+// RecordingFolderError, RecordedFileError.
 RecordedStreams recorded_streams(const std::vector<std::string>& inputs,
                                  const bags::FileOptions& options = {},
                                  const ReadProgress& progress = {});

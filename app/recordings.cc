@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <variant>
 
 #include "app/interrupt.h"
+#include "app/recorded_streams.h"
 #include "recording/counted.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/loader.h"
@@ -71,29 +73,40 @@ class InputCheck final : public ForwardingSink {
 // pipeline that needs them: its stamps would be bare arrivals, or none of a common clock.
 class CheckedSource final : public RecordingSource {
  public:
-  // `choices` outlive it.
+  // `choices` outlive it. `of_files`: it has neither stamps of hosts nor a model of the cameras.
   CheckedSource(std::unique_ptr<RecordingSource> source,
-                const std::vector<evaluation::PipelineChoice>& choices)
-      : source_(std::move(source)), choices_(choices) {}
+                const std::vector<evaluation::PipelineChoice>& choices, bool of_files)
+      : source_(std::move(source)), choices_(choices), of_files_(of_files) {}
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
     InputCheck check(sink);
     RecordingCost cost = source_->record(request, check);
     for (const evaluation::PipelineChoice& choice : choices_) {
-      if (choice.pipeline.name != request.pipeline) continue;
-      for (const Need need : choice.device_time.info().needs) {
-        const char* const missing = check.lacking(need);
-        if (missing == nullptr) continue;
-        throw RecordingFailed(fmt::format("{} needs {}, and none was recorded",
-                                          choice.device_time.info().name, missing));
-      }
+      if (choice.pipeline.name == request.pipeline) check_needs(choice, check);
     }
     return cost;
   }
 
  private:
+  void check_needs(const evaluation::PipelineChoice& choice, const InputCheck& check) const {
+    for (const Need need : choice.device_time.info().needs) {
+      const bool lacks_hosts = of_files_ && need == Need::kHostStamps;
+      const char* const missing =
+          lacks_hosts ? "stamps of the host's clock by the camera" : check.lacking(need);
+      if (missing == nullptr) continue;
+      throw RecordingFailed(fmt::format("{} needs {}, and none was recorded",
+                                        choice.device_time.info().name, missing));
+    }
+    if (!of_files_ || !choice.device_time_variants.calibrated) return;
+    throw RecordingFailed(
+        fmt::format("{} needs delays that were measured for the cameras' model, which files do not "
+                    "state",
+                    choice.pipeline.device_time));
+  }
+
   std::unique_ptr<RecordingSource> source_;
   const std::vector<evaluation::PipelineChoice>& choices_;
+  bool of_files_;
 };
 
 scenarios::Scenario recorded_scenario(const RecordingFolder& recorded, const std::string& folder) {
@@ -120,10 +133,11 @@ void record_captures(const std::vector<evaluation::PipelineChoice>& choices,
   }
 }
 
-RecordedRun::RecordedRun(const std::string& folder) : path_(folder), folder_(folder) {
-  const std::vector<RecordedCapture>& captures = folder_.captures();
+RecordedRun::RecordedRun(const std::string& folder)
+    : path_(folder), folder_(std::in_place, folder) {
+  const std::vector<RecordedCapture>& captures = folder_->captures();
   if (captures.empty()) throw RecordingFolderError(fmt::format("{}: holds no capture", folder));
-  scenario_ = recorded_scenario(folder_, folder);
+  scenario_ = recorded_scenario(*folder_, folder);
   const auto [first, last] = std::minmax_element(
       captures.begin(), captures.end(),
       [](const RecordedCapture& a, const RecordedCapture& b) { return a.seed < b.seed; });
@@ -136,12 +150,18 @@ RecordedRun::RecordedRun(const std::string& folder) : path_(folder), folder_(fol
   seeds_ = last->seed - first->seed + 1;
 }
 
+RecordedRun::RecordedRun(std::vector<std::string> files, RecordedStreams recorded,
+                         const StreamScoring& scoring)
+    : path_(fmt::format("{}", fmt::join(files, " "))),
+      streams_(std::in_place, std::move(recorded), files, scoring) {}
+
 std::vector<std::string> RecordedRun::missing() const {
-  const PlannedCaptures& planned = folder_.description().planned;
+  if (!folder_) return {};
+  const PlannedCaptures& planned = folder_->description().planned;
   std::vector<std::string> notes;
   for (const std::string& pipeline : planned.pipelines) {
     const auto begun = static_cast<std::uint64_t>(std::count_if(
-        folder_.captures().begin(), folder_.captures().end(),
+        folder_->captures().begin(), folder_->captures().end(),
         [&](const RecordedCapture& capture) { return capture.pipeline == pipeline; }));
     if (begun >= planned.seeds) continue;
     notes.push_back(fmt::format("pipeline {}: {} of {} not recorded", pipeline,
@@ -152,8 +172,12 @@ std::vector<std::string> RecordedRun::missing() const {
 
 std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pipelines) const {
   std::vector<std::string> known;
-  for (const RecordedCapture& capture : folder_.captures()) {
-    if (!contains(known, capture.pipeline)) known.push_back(capture.pipeline);
+  if (streams_) {
+    for (const scenarios::Pipeline& each : scenario().pipelines) known.push_back(each.name);
+  } else {
+    for (const RecordedCapture& capture : folder_->captures()) {
+      if (!contains(known, capture.pipeline)) known.push_back(capture.pipeline);
+    }
   }
   for (const std::string& name : pipelines) {
     if (contains(known, name)) continue;
@@ -165,27 +189,47 @@ std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pip
 
 std::unique_ptr<RecordingSource> RecordedRun::source(
     const std::vector<evaluation::PipelineChoice>& choices) const {
-  return interruptible(std::make_unique<CheckedSource>(make_recorded_source(folder_), choices));
+  std::unique_ptr<RecordingSource> played =
+      streams_ ? streams_->source() : make_recorded_source(*folder_);
+  return interruptible(
+      std::make_unique<CheckedSource>(std::move(played), choices, streams_.has_value()));
 }
 
 evaluation::Results RecordedRun::evaluate(const std::vector<std::string>& pipelines,
                                           bool keep_pulses,
                                           const evaluation::Progress& progress) const {
   const std::vector<evaluation::PipelineChoice> choices =
-      evaluation::choose_pipelines(scenario_, pipelines);
-  return evaluation::evaluate(
-      scenario_, [this, &choices] { return source(choices); },
+      evaluation::choose_pipelines(scenario(), pipelines);
+  evaluation::Results results = evaluation::evaluate(
+      scenario(), [this, &choices] { return source(choices); },
       {.first_seed = first_seed_,
        .seeds = seeds_,
        .pipelines = pipelines,
        .keep_pulses = keep_pulses},
       progress);
+  if (!streams_) return results;
+  for (evaluation::Row& row : results.rows) row.host_sync = "as_recorded";
+  results.claims.clear();
+  std::ranges::move(streams_->warnings(), std::back_inserter(results.warnings));
+  return results;
 }
 
 bool is_recording_folder(const std::string& path) {
   const std::filesystem::path folder(path);
   return std::filesystem::exists(folder / "manifest.json") &&
          !std::filesystem::exists(folder / "results.json");
+}
+
+bool is_recording(const std::string& path) {
+  if (is_recording_folder(path)) return true;
+  if (std::filesystem::is_directory(path)) return bags::is_bag(path);
+  return std::filesystem::exists(path) && !path.ends_with(".json");
+}
+
+RecordedRun recorded_run(const std::vector<std::string>& inputs, const bags::FileOptions& options,
+                         const std::vector<std::string>& pipelines) {
+  if (const auto folder = recording_folder_of(inputs)) return RecordedRun(*folder);
+  return RecordedRun(inputs, recorded_streams(inputs, options), {.pipelines = pipelines});
 }
 
 std::vector<std::string> capture_notes(const evaluation::Results& results) {

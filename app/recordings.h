@@ -8,6 +8,10 @@
 //   scenario.resolved_json()}); CapturesMade made; record_captures(choices,
 //   *simulated_world(scenario), {.seeds = 3}, writer, made, progress);
 //
+// Files of other people (bags, CSV, IBL) are a recording of one capture (app/stream_run.h), scored
+// by the same code. What a recording lacks of a pipeline's need is the reason why its row has no
+// score.
+//
 //   const RecordedRun run("monday");
 //   const evaluation::Results results = run.evaluate(run.chosen({}), false, progress);
 #ifndef SIMBENCH_APP_RECORDINGS_H_
@@ -15,9 +19,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/stream_run.h"
+#include "bags/recorded_files.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "recording/recording.h"
@@ -48,11 +55,18 @@ class RecordedRun {
   // Throws RecordingFolderError or scenarios::InputError where there is nothing to evaluate: no
   // capture, no scenario.
   explicit RecordedRun(const std::string& folder);
-  RecordedRun(const RecordedRun&) = delete;
-  RecordedRun& operator=(const RecordedRun&) = delete;
+  // Of files, whose streams these are. Throws scenarios::InputError.
+  RecordedRun(std::vector<std::string> files, RecordedStreams recorded,
+              const StreamScoring& scoring);
+  RecordedRun(RecordedRun&&) = default;
+  RecordedRun& operator=(RecordedRun&&) = default;
 
   const std::string& path() const { return path_; }
-  const scenarios::Scenario& scenario() const { return scenario_; }
+  const scenarios::Scenario& scenario() const {
+    return streams_ ? streams_->scenario() : scenario_;
+  }
+  // The streams of files; null of a recording folder.
+  const StreamRun* streams() const { return streams_ ? &*streams_ : nullptr; }
   // The planned captures that are not there, as of a killed `simbench record`: a line a pipeline.
   std::vector<std::string> missing() const;
   // These pipelines, or all in the order in which they were recorded if none is named. Throws
@@ -60,8 +74,8 @@ class RecordedRun {
   std::vector<std::string> chosen(const std::vector<std::string>& pipelines) const;
   std::uint64_t first_seed() const { return first_seed_; }
   std::uint64_t seeds() const { return seeds_; }
-  // Plays the captures of these pipelines; `choices` and this outlive it. Refuses one without polls
-  // to a pipeline that needs them (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).
+  // Plays the captures of these pipelines; `choices` and this outlive it. Refuses a pipeline whose
+  // needs the recording lacks (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).
   std::unique_ptr<RecordingSource> source(
       const std::vector<evaluation::PipelineChoice>& choices) const;
   // Scores all recorded seeds; notes captures that are missing or damaged. Ends at Ctrl-C.
@@ -70,14 +84,22 @@ class RecordedRun {
 
  private:
   std::string path_;
-  RecordingFolder folder_;
-  scenarios::Scenario scenario_;
-  std::uint64_t first_seed_ = 0;
-  std::uint64_t seeds_ = 0;
+  std::optional<RecordingFolder> folder_;  // this, or streams_
+  std::optional<StreamRun> streams_;
+  scenarios::Scenario scenario_;  // of a folder
+  std::uint64_t first_seed_ = 1;
+  std::uint64_t seeds_ = 1;
 };
 
 // Whether the folder has a manifest and no results: a recording, and no archive of a run.
 bool is_recording_folder(const std::string& path);
+// Whether it is that, or a file of other people: anything but a folder and a .json file.
+bool is_recording(const std::string& path);
+
+// A recording folder, or files with their usual scoring. `pipelines`: of files, to be scored; of a
+// folder RecordedRun::chosen() takes them. Throws what RecordedRun and app::recorded_streams() do.
+RecordedRun recorded_run(const std::vector<std::string>& inputs, const bags::FileOptions& options,
+                         const std::vector<std::string>& pipelines);
 
 // What went wrong in captures that were scored all the same.
 std::vector<std::string> capture_notes(const evaluation::Results& results);

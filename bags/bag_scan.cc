@@ -236,7 +236,7 @@ class StreamMaker {
     join_publishers(tracks);
     leave_out_copies(tracks);
     for (const FrameTrack& track : tracks) {
-      CameraStream stream;
+      RecordedStream stream;
       if (!make_stream(track, path_, stream, scan_.notes)) continue;
       point_to_images(track, stream);
       names_.push_back(named(track));
@@ -319,7 +319,7 @@ class StreamMaker {
   }
 
   // A stream of metadata: its frames are the images with the same header stamps.
-  void point_to_images(const FrameTrack& track, CameraStream& stream) const {
+  void point_to_images(const FrameTrack& track, RecordedStream& stream) const {
     if (track.camera.kind != TopicKind::kMetadata) return;
     const FrameTrack* images = nullptr;
     for (const FrameTrack& other : left_out_) {
@@ -356,7 +356,7 @@ class StreamMaker {
     for (const NamedStream& name : names_) cameras.insert(name.camera);
     std::map<std::string, int> uses;
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      CameraStream& stream = scan_.streams[i];
+      RecordedStream& stream = scan_.streams[i];
       const std::string& own = names_[i].camera;
       stream.camera = cameras.size() == 1 || own.empty() ? name_ : own;
       stream.camera = printable_name(stream.camera);

@@ -2,7 +2,7 @@
 //
 // A stream's stamps are the camera's where the bag has them (metadata of the SDK or of
 // realsense-ros: SENSOR_TIMESTAMP, else FRAME_TIMESTAMP), else those of the message header, which a
-// computer may have made (CameraStream::stamped_by_host). Arrivals: in the SDK's bags its
+// computer may have made (RecordedStream::stamped_by_host). Arrivals: in the SDK's bags its
 // TIME_OF_ARRIVAL, else BACKEND_TIMESTAMP; in those of ROS the log time, of the recorder's clock.
 // StreamOrigin says which it was; one source serves a whole stream, so a stamp that a frame lacks
 // makes the next best source that of all.
@@ -12,7 +12,7 @@
 // is a note.
 //
 //   const BagScan scan = scan_bag("rig.bag", "rig", {});
-//   for (const CameraStream& stream : scan.streams) ...
+//   for (const RecordedStream& stream : scan.streams) ...
 //
 // Memory: 80 bytes a frame while it reads, then 32. Source: docs/reference/bags.md
 // sections 2 and 3.
@@ -49,7 +49,7 @@ struct TopicScan {
 struct BagScan {
   BagFacts facts;
   std::vector<TopicScan> topics;  // in order of occurrence
-  std::vector<CameraStream> streams;
+  std::vector<RecordedStream> streams;
   std::vector<std::string> notes;    // for the user: damage, what was left out
   std::vector<std::string> devices;  // "Intel RealSense D455, serial number 0123"
 };

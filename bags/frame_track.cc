@@ -143,7 +143,7 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
   return value;
 }
 
-bool make_stream(const FrameTrack& track, const std::string& place, CameraStream& stream,
+bool make_stream(const FrameTrack& track, const std::string& place, RecordedStream& stream,
                  std::vector<std::string>& notes) {
   const std::string topic = printable_name(track.topic_name);
   const StampField* stamps = stamps_of(track);

@@ -49,7 +49,7 @@ std::optional<std::int64_t> whole_number(std::string_view text);
 
 // Appends frames of `track` to the notes and to the stream; false, with a note, if there is no
 // stamp that can be used. `place`: the file, for the notes.
-bool make_stream(const FrameTrack& track, const std::string& place, CameraStream& stream,
+bool make_stream(const FrameTrack& track, const std::string& place, RecordedStream& stream,
                  std::vector<std::string>& notes);
 
 }  // namespace simbench::bags

@@ -37,8 +37,8 @@ std::uint64_t size_of(const std::string& path) {
 
 // The part of a recording that goes on in its next file.
 void append(BagScan& scan, BagScan next) {
-  for (CameraStream& stream : next.streams) {
-    const auto known = std::ranges::find_if(scan.streams, [&stream](const CameraStream& s) {
+  for (RecordedStream& stream : next.streams) {
+    const auto known = std::ranges::find_if(scan.streams, [&stream](const RecordedStream& s) {
       return s.camera == stream.camera && s.stream == stream.stream;
     });
     if (known == scan.streams.end()) {
@@ -91,10 +91,10 @@ void append(BagScan& scan, BagScan next) {
 void tell_apart(std::vector<RecordedStreams>& recordings, const std::vector<std::string>& names) {
   std::map<std::string, std::set<std::size_t>> users;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    for (const CameraStream& stream : recordings[i].streams) users[stream.camera].insert(i);
+    for (const RecordedStream& stream : recordings[i].streams) users[stream.camera].insert(i);
   }
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    for (CameraStream& stream : recordings[i].streams) {
+    for (RecordedStream& stream : recordings[i].streams) {
       if (users[stream.camera].size() > 1) stream.camera = names[i] + "/" + stream.camera;
     }
   }

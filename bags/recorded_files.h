@@ -23,8 +23,8 @@
 namespace simbench::bags {
 
 struct FileOptions {
-  std::vector<std::string> topics{};    // of bags; empty: those that look like a camera's
-  std::optional<CsvColumns> columns{};  // of CSV files; nothing: those of rs-data-collect
+  std::vector<std::string> topics{};          // of bags; empty: those that look like a camera's
+  std::optional<RecordingColumns> columns{};  // of CSV files; nothing: those of rs-data-collect
 };
 
 // Whether it is a bag, or a folder of rosbag2. Throws BagError if it cannot be read.

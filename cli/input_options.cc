@@ -20,7 +20,7 @@ void add_input_options(Command& command, InputOptions& options) {
 
 bags::FileOptions file_options(const InputOptions& options) {
   bags::FileOptions files{.topics = options.topics};
-  if (!options.columns.empty()) files.columns = CsvColumns::parse(options.columns);
+  if (!options.columns.empty()) files.columns = RecordingColumns::parse(options.columns);
   return files;
 }
 

@@ -1,7 +1,7 @@
 // Streams of stamped frames: what is known of a rig from its files alone, without a truth and
 // without the events of its hosts.
 //
-//   for (const CameraStream& stream : app::recorded_streams({"rig.bag"}).streams) ...
+//   for (const RecordedStream& stream : app::recorded_streams({"rig.bag"}).streams) ...
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped.
 #ifndef SIMBENCH_RECORDING_RECORDED_STREAMS_H_
@@ -33,7 +33,7 @@ struct StreamOrigin {
 };
 
 // One stream of one camera, frames in order of delivery.
-struct CameraStream {
+struct RecordedStream {
   std::string camera;
   std::string host;
   std::string stream;  // "Depth 0": type and index
@@ -47,7 +47,7 @@ struct CameraStream {
 };
 
 struct RecordedStreams {
-  std::vector<CameraStream> streams;
+  std::vector<RecordedStream> streams;
   std::vector<std::string> notes;  // for the user: what was left out
 };
 

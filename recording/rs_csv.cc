@@ -29,14 +29,14 @@ struct Unit {
 constexpr std::array<Unit, 4> kUnits = {{{"ns", -6}, {"us", -3}, {"ms", 0}, {"s", 3}}};
 
 // Those of rs-data-collect.
-const CsvColumns& usual_columns() {
-  static const CsvColumns columns{{{{"Stream Type"},
-                                    {"Index"},
-                                    {"F#"},
-                                    {"HW Timestamp (ms)"},
-                                    {"Host Timestamp(ms)"},
-                                    {"camera"},
-                                    {"host"}}}};
+const RecordingColumns& usual_columns() {
+  static const RecordingColumns columns{{{{"Stream Type"},
+                                          {"Index"},
+                                          {"F#"},
+                                          {"HW Timestamp (ms)"},
+                                          {"Host Timestamp(ms)"},
+                                          {"camera"},
+                                          {"host"}}}};
   return columns;
 }
 
@@ -84,14 +84,15 @@ std::string plain_name(std::string_view cell) {
 }
 
 // Whether a file must have the column: rs-data-collect writes five, others those that are named.
-bool is_required(const CsvColumns& columns, CsvField field, bool usual) {
+bool is_required(const RecordingColumns& columns, CsvField field, bool usual) {
   if (usual) return field != CsvField::kCamera && field != CsvField::kHost;
   return !columns.of(field).name.empty();
 }
 
 // Nothing if it is no header.
 std::optional<Header> parse_header(const std::vector<std::string_view>& cells,
-                                   const CsvColumns& columns, bool usual, const CsvPlace& place) {
+                                   const RecordingColumns& columns, bool usual,
+                                   const CsvPlace& place) {
   Header header;
   header.cells = cells.size();
   header.position.fill(kAbsent);
@@ -128,7 +129,7 @@ char separator_of(std::string_view line) {
 }
 
 bool is_header_again(const std::vector<std::string_view>& cells, const Header& header,
-                     const CsvColumns& columns, bool usual) {
+                     const RecordingColumns& columns, bool usual) {
   const CsvField field = usual ? CsvField::kStream : CsvField::kSensor;
   const std::size_t position = usual ? 0 : header.position[static_cast<std::size_t>(field)];
   return position < cells.size() &&
@@ -163,7 +164,7 @@ std::optional<std::string> shifted(std::string_view text, int exponent) {
   return (negative ? "-" : "") + (digits.empty() ? "0" : digits) + "." + fraction + "0";
 }
 
-Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column,
+Nanoseconds stamp_of(std::string_view cell, const RecordingColumns::Column& column,
                      const CsvPlace& place) {
   std::optional<Nanoseconds> stamp;
   if (column.exponent == 0) {
@@ -204,7 +205,7 @@ class CsvRecordingReader::File {
   [[noreturn]] void fail_header(std::string_view line) const;
   void check_cells() const;
   StampedFrame frame(std::uint64_t order) const;
-  CameraStream& stream_of(std::string_view camera, std::string_view host);
+  RecordedStream& stream_of(std::string_view camera, std::string_view host);
   const Naming& naming_of(std::string_view camera, std::string_view host);
   void check_naming(const Naming& naming, std::string_view camera, std::string_view host) const;
 
@@ -224,7 +225,7 @@ class CsvRecordingReader::File {
   bool is_motion_line() const { return is_usual() && is_motion(cell(CsvField::kStream)); }
 
   CsvRecordingReader& reader_;
-  const CsvColumns& columns_;
+  const RecordingColumns& columns_;
   CsvPlace place_;
   std::string name_;
   std::optional<Header> header_;
@@ -249,7 +250,7 @@ void CsvRecordingReader::File::read_line(std::string_view line) {
       (has(CsvField::kStream) && cell(CsvField::kStream).empty())) {
     place_.fail("found an empty cell, allowed: the name of a stream, camera or host");
   }
-  CameraStream& stream = stream_of(camera, host);
+  RecordedStream& stream = stream_of(camera, host);
   stream.frames.push_back(frame(stream.frames.size()));
   any_frame_ = true;
 }
@@ -259,7 +260,7 @@ StampedFrame CsvRecordingReader::File::frame(std::uint64_t order) const {
   const std::string& name = columns_.of(CsvField::kCounter).name;
   frame.counter =
       has(CsvField::kCounter) ? counter_of(cell(CsvField::kCounter), name, place_) : order;
-  const CsvColumns::Column& sensor = columns_.of(CsvField::kSensor);
+  const RecordingColumns::Column& sensor = columns_.of(CsvField::kSensor);
   frame.sensor = stamp_of(cell(CsvField::kSensor), sensor, place_);
   if (frame.sensor < Nanoseconds::zero()) {
     place_.fail(sensor.name + ": found " + quoted_bytes(cell(CsvField::kSensor)) +
@@ -297,7 +298,7 @@ void CsvRecordingReader::File::fail_header(std::string_view line) const {
                 ", or --columns sensor=COLUMN,arrival=COLUMN for columns of other names");
   }
   std::string missing;
-  for (const CsvColumns::Column& column : columns_.columns) {
+  for (const RecordingColumns::Column& column : columns_.columns) {
     const bool there = std::any_of(cells_.begin(), cells_.end(), [&](std::string_view cell) {
       return plain_name(cell) == plain_name(column.name);
     });
@@ -319,7 +320,8 @@ void CsvRecordingReader::File::check_cells() const {
   }
 }
 
-CameraStream& CsvRecordingReader::File::stream_of(std::string_view camera, std::string_view host) {
+RecordedStream& CsvRecordingReader::File::stream_of(std::string_view camera,
+                                                    std::string_view host) {
   const std::string name = stream_name();
   key_.assign(camera).append(",").append(name);
   auto known = reader_.index_.find(key_);
@@ -329,7 +331,7 @@ CameraStream& CsvRecordingReader::File::stream_of(std::string_view camera, std::
     known = reader_.index_.emplace(key_, Known{number, &naming}).first;
     reader_.streams_.push_back(
         {printable_name(camera), printable_name(naming.host), printable_name(name), {}});
-    CameraStream& added = reader_.streams_.back();
+    RecordedStream& added = reader_.streams_.back();
     added.counted = has(CsvField::kCounter);
     added.origin.file = place_.path;
   }
@@ -391,13 +393,13 @@ void CsvRecordingReader::read_text(std::string_view text, const std::string& pat
   file.end(!text.empty());
 }
 
-CsvColumns CsvColumns::parse(const std::string& text) {
+RecordingColumns RecordingColumns::parse(const std::string& text) {
   const auto fail = [](std::string_view found) {
     throw CsvError("--columns: found " + quoted_bytes(found) +
                    ", allowed: FIELD=COLUMN or FIELD=COLUMN:UNIT with commas between them; fields "
                    "stream, index, counter, sensor, arrival, camera, host; units ns, us, ms, s");
   };
-  CsvColumns parsed;
+  RecordingColumns parsed;
   std::vector<std::string_view> parts;
   split(text, ',', parts);
   for (const std::string_view part : parts) {
@@ -425,7 +427,7 @@ CsvColumns CsvColumns::parse(const std::string& text) {
   return parsed;
 }
 
-std::vector<CameraStream> CsvRecordingReader::take() {
+std::vector<RecordedStream> CsvRecordingReader::take() {
   index_.clear();
   cameras_.clear();
   return std::exchange(streams_, {});

@@ -14,9 +14,9 @@
 // that files name in a column continues in the order of the files. Stamps of several cameras must
 // count from one zero per host, and, for a meaningful spread, from one for all hosts.
 //
-// CsvColumns reads files of any other tool: which column is what, and in which unit. Its cells may
-// be separated by commas, semicolons or tabs, whichever the header has most of. Without a column
-// for the counter frames count as they come; without one for the stream, it is "frame".
+// RecordingColumns reads files of any other tool: which column is what, and in which unit. Its
+// cells may be separated by commas, semicolons or tabs, whichever the header has most of. Without a
+// column for the counter frames count as they come; without one for the stream, it is "frame".
 //
 // What may be wrong is refused, with its line: more or fewer cells than the header has (a decimal
 // comma), a column that stands twice, a camera on two hosts. A last line without its line end may
@@ -29,7 +29,7 @@
 //   CsvRecordingReader reader;
 //   reader.read_file("front.csv");
 //   reader.read_file("back.csv");
-//   std::vector<CameraStream> streams = reader.take();
+//   std::vector<RecordedStream> streams = reader.take();
 #ifndef SIMBENCH_RECORDING_RS_CSV_H_
 #define SIMBENCH_RECORDING_RS_CSV_H_
 
@@ -60,7 +60,7 @@ enum class CsvField : std::uint8_t { kStream, kIndex, kCounter, kSensor, kArriva
 inline constexpr std::size_t kCsvFields = 7;
 
 // Which columns of a file are what.
-struct CsvColumns {
+struct RecordingColumns {
   struct Column {
     std::string name{};  // as in the header; blanks and capitals do not matter; empty: none
     int exponent = 0;    // of ten, from its unit to milliseconds
@@ -70,7 +70,7 @@ struct CsvColumns {
   // From "sensor=t_cam:us,arrival=t_host:ns,counter=seq": of stream, index, counter, sensor,
   // arrival, camera and host, the units ns, us, ms (the default) and s. Throws CsvError:
   // "--columns: ...", also if the sensor's or the arrival's is missing.
-  static CsvColumns parse(const std::string& text);
+  static RecordingColumns parse(const std::string& text);
   const Column& of(CsvField field) const { return columns[static_cast<std::size_t>(field)]; }
 };
 
@@ -78,7 +78,7 @@ class CsvRecordingReader {
  public:
   // Those of rs-data-collect.
   CsvRecordingReader() = default;
-  explicit CsvRecordingReader(CsvColumns columns) : columns_(std::move(columns)) {}
+  explicit CsvRecordingReader(RecordingColumns columns) : columns_(std::move(columns)) {}
 
   // `name`: of the camera, if the file names none; empty: that of the file. Throws CsvError:
   // unreadable, without a header or a frame, a line that is damaged.
@@ -88,7 +88,7 @@ class CsvRecordingReader {
   void read_text(std::string_view text, const std::string& path);
 
   // In order of first occurrence. The reader is empty afterwards.
-  std::vector<CameraStream> take();
+  std::vector<RecordedStream> take();
   // What was left out, a line each.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -107,8 +107,8 @@ class CsvRecordingReader {
     const Naming* camera;
   };
 
-  std::optional<CsvColumns> columns_;
-  std::vector<CameraStream> streams_;
+  std::optional<RecordingColumns> columns_;
+  std::vector<RecordedStream> streams_;
   std::unordered_map<std::string, Known> index_;  // by camera and stream
   std::unordered_map<std::string, Naming> cameras_;
   std::vector<std::string> notes_;

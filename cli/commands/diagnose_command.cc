@@ -8,7 +8,7 @@
 #include "cli/input_options.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/page/diagnose_page.h"
-#include "reports/rigs/diagnose_report.h"
+#include "reports/recordings/diagnose_report.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::cli {

@@ -6,14 +6,17 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "algorithms/registry.h"
+#include "app/stream_run.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
-#include "evaluation/replay/gathered_sets.h"
+#include "evaluation/frames/gathered_sets.h"
 #include "recording/counted.h"
-#include "reports/rigs/sets_csv.h"
+#include "reports/recordings/sets_csv.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::cli {
@@ -23,12 +26,13 @@ constexpr const char* kExportExamples = R"(
 Finds the frames that belong together and writes where they are: a CSV line a frame with set,
 camera, stream, file, topic, number of the message in its topic, counter, sensor stamp, arrival and
 global stamp (all in ns). A program that reads the bags takes the matched frames out by topic and
-message.
+message. With --stamps it writes every frame with its global stamps by the named device_times.
 
 Examples:
   simbench export front.bag back.bag -o sets.csv
   simbench export rig.mcap --gathering approximate_time --complete > sets.csv
   simbench export *.bag --device-time two_way_hull --stream "Color 0" -o colour.csv
+  simbench export rig.csv --stamps hull_300,raw_arrival -o frames.csv
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
@@ -38,65 +42,59 @@ struct ExportOptions {
   std::string device_time = "regression_30";
   std::string gathering = "yoon2021";
   std::string stream;
+  std::vector<std::string> stamps;
   bool complete = false;
   std::string output;
 };
 
-// The entry of this name, among those that run on recordings.
-template <class Entry>
-const Entry& chosen_entry(const std::vector<Entry>& entries, const std::string& option,
-                          const std::string& name) {
-  std::vector<std::string> known;
-  for (const Entry& entry : entries) {
-    if (!entry.make || !evaluation::runs_on_recordings(entry.info)) continue;
-    if (entry.info.name == name) return entry;
-    known.push_back(entry.info.name);
-  }
+void check_known(const std::vector<std::string>& known, const char* option,
+                 const std::string& name) {
+  if (std::ranges::find(known, name) != known.end()) return;
   throw scenarios::InputError(
       fmt::format("{}: found '{}', allowed {}", option, name, fmt::join(known, ", ")));
 }
 
-// The kind of stream that the most cameras have; of equal ones the first.
-std::string chosen_stream(const std::vector<CameraStream>& streams, const std::string& wanted) {
-  std::vector<std::string> kinds;
-  for (const CameraStream& stream : streams) {
-    if (std::ranges::find(kinds, stream.stream) == kinds.end()) kinds.push_back(stream.stream);
+void check_algorithms(const ExportOptions& options) {
+  check_known(app::device_times_of_stamps(), "--device-time", options.device_time);
+  std::vector<std::string> gatherings;
+  for (const GatheringEntry& entry : algorithms<GatheringEntry>()) {
+    if (entry.info.needs.empty()) gatherings.push_back(entry.info.name);
   }
-  const auto cameras = [&streams](const std::string& kind) {
-    return std::ranges::count(streams, kind, &CameraStream::stream);
-  };
-  if (wanted.empty()) {
-    return *std::ranges::max_element(kinds, {}, cameras);
+  check_known(gatherings, "--gathering", options.gathering);
+}
+
+void write_sets(const ExportOptions& options, RecordedStreams recorded, std::ostream& out) {
+  const app::StreamRun run(
+      std::move(recorded), options.files,
+      {.pipelines = {options.device_time + "+" + options.gathering}, .stream = options.stream});
+  const std::unique_ptr<evaluation::StreamSource> source = run.source();
+  if (source->streams().size() < 2) {
+    throw scenarios::InputError(fmt::format(
+        "found one camera with a stream {}, allowed two or more to gather", run.kind()));
   }
-  if (std::ranges::find(kinds, wanted) != kinds.end()) return wanted;
-  throw scenarios::InputError(
-      fmt::format("--stream: found '{}', allowed {}", wanted, fmt::join(kinds, ", ")));
+  evaluation::GatheredSets found = evaluation::gathered_sets(
+      run.scenario(), evaluation::choose_pipelines(run.scenario(), {}).front(), *source);
+  if (options.complete) {
+    std::erase_if(found.sets, [](const evaluation::GatheredSet& set) { return !set.complete; });
+  }
+  reports::write_sets_csv(found.sets, source->streams(), out);
+  print_note(fmt::format("{} of {} by {} and {}, {} in no set", counted(found.sets.size(), "set"),
+                         run.kind(), options.device_time, options.gathering,
+                         counted(static_cast<std::uint64_t>(found.discarded), "frame")));
 }
 
 int run_export(const ExportOptions& options) {
   std::optional<reports::OutputFile> file;
   if (!options.output.empty()) file.emplace(options.output);
-  const DeviceTimeEntry& device_time =
-      chosen_entry(algorithms<DeviceTimeEntry>(), "--device-time", options.device_time);
-  const GatheringEntry& gathering =
-      chosen_entry(algorithms<GatheringEntry>(), "--gathering", options.gathering);
-  const auto rig = read_inputs(options.files, options.inputs);
+  check_algorithms(options);
+  auto rig = read_inputs(options.files, options.inputs);
   if (!rig) return kInterrupted;
-  const std::string kind = chosen_stream(rig->streams, options.stream);
-  if (std::ranges::count(rig->streams, kind, &CameraStream::stream) < 2) {
-    throw scenarios::InputError(
-        fmt::format("found one camera with a stream {}, allowed two or more to gather", kind));
-  }
-  evaluation::GatheredSets found =
-      evaluation::gathered_sets(rig->streams, kind, device_time, gathering);
-  if (options.complete) {
-    std::erase_if(found.sets, [](const evaluation::GatheredSet& set) { return !set.complete; });
-  }
   std::ostringstream text;
-  reports::write_sets_csv(found.sets, rig->streams, text);
-  print_note(fmt::format("{} of {} by {} and {}, {} in no set", counted(found.sets.size(), "set"),
-                         kind, options.device_time, options.gathering,
-                         counted(found.discarded, "frame")));
+  if (options.stamps.empty()) {
+    write_sets(options, std::move(*rig), text);
+  } else {
+    reports::write_stamps_csv(app::stamped_streams(rig->streams, options.stamps, "--stamps"), text);
+  }
   if (!file) {
     print_result(text.str());
     return kOk;
@@ -118,6 +116,8 @@ void add_export_command(CommandLine& line) {
   command.text("--stream", "NAME", options->stream,
                "Of this kind of stream. Default: the one that most cameras have");
   command.flag("--complete", options->complete, "Only sets in which no camera is missing");
+  command.list("--stamps", "NAME,...", options->stamps,
+               "In place of sets: every frame, with its global stamps by these device_times");
   add_input_options(command, options->inputs);
   command.text("-o,--output", "FILE.csv", options->output,
                "The file to write. Default: standard output. Replaces an earlier file");

@@ -9,6 +9,7 @@
 #include "app/recordings.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/input_options.h"
 #include "cli/progress.h"
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/diagnosis/diagnose.h"
@@ -18,7 +19,7 @@
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
-#include "reports/rigs/diagnose_figure.h"
+#include "reports/recordings/diagnose_figure.h"
 #include "reports/text/block.h"
 #include "reports/text/number_text.h"
 #include "reports/text/output_file.h"
@@ -42,6 +43,7 @@ Examples:
   simbench figure host_clocks --scenario 18cam_6host_45fps --seed 7 --pipelines ntp_w32time -o h.svg
   simbench figure distributions results/monday -o distributions.csv
   simbench figure phases rig.csv -o phases.svg          of a recording: who follows the trigger
+  simbench figure stamp_intervals a.bag b.bag --pipelines hull_300 -o i.svg
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
@@ -49,7 +51,8 @@ constexpr std::uint64_t kUsualSeeds = 32;
 
 struct FigureCommand {
   std::string name;
-  std::string archive;
+  std::vector<std::string> inputs;  // an archive, or what a recording is in
+  InputOptions reading;
   std::string scenario;
   std::vector<std::string> sets;
   std::vector<std::string> pipelines;
@@ -158,7 +161,12 @@ std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command
 
 std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
                                                    const FigureEntry& entry) {
-  reports::Archive archive = reports::read_archive(command.archive);
+  if (command.inputs.size() > 1) {
+    throw InputError(
+        fmt::format("{}: found {} folders, allowed: one archive, or files of one recording",
+                    command.inputs[1], command.inputs.size()));
+  }
+  reports::Archive archive = reports::read_archive(command.inputs.front());
   const std::vector<std::string> known =
       collected(archive.results.rows, &evaluation::Row::pipeline);
   const app::FigureOptions options = options_of(command, entry, known);
@@ -174,9 +182,10 @@ std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& comman
     throw InputError(
         fmt::format("{}: found a recording, allowed: --scenario or the folder of "
                     "`simbench run --output`, because {} needs other worlds",
-                    command.archive, entry.id));
+                    command.inputs.front(), entry.id));
   }
-  const app::RecordedRun run(command.archive);
+  const app::RecordedRun run =
+      app::recorded_run(command.inputs, file_options(command.reading), command.pipelines);
   const app::FigureOptions options = options_of(command, entry, run.chosen({}));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
     return app::recording_figures(run, options, progress);
@@ -185,7 +194,7 @@ std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& comman
 
 // What the stamps of a rig show, of which nothing else is known.
 app::ArchiveFigures make_of_stamps(const FigureCommand& command) {
-  const RecordedStreams rig = app::recorded_streams({command.archive});
+  const RecordedStreams rig = app::recorded_streams(command.inputs, file_options(command.reading));
   return {.figures = {reports::diagnose_figure(evaluation::diagnose(rig.streams, {}))},
           .notes = rig.notes};
 }
@@ -193,9 +202,9 @@ app::ArchiveFigures make_of_stamps(const FigureCommand& command) {
 std::optional<app::ArchiveFigures> make_figures(const FigureCommand& command,
                                                 const FigureEntry& entry) {
   if (entry.scope == FigureScope::kRecording) return make_of_stamps(command);
-  if (app::is_recording_folder(command.archive)) return make_of_recording(command, entry);
-  return command.archive.empty() ? make_of_scenario(command, entry)
-                                 : make_of_archive(command, entry);
+  if (command.inputs.empty()) return make_of_scenario(command, entry);
+  if (app::is_recording(command.inputs.front())) return make_of_recording(command, entry);
+  return make_of_archive(command, entry);
 }
 
 // The requested one of the made figures: of the named pipeline, if one is named.
@@ -242,10 +251,10 @@ void check(const FigureCommand& command) {
   if (command.name.empty()) {
     refuse("FIGURE", "is missing; `simbench figure --list` names the figures");
   }
-  if (command.archive.empty() == command.scenario.empty()) {
+  if (command.inputs.empty() == command.scenario.empty()) {
     refuse("ARCHIVE, --scenario", "one of them is needed, and not both");
   }
-  if (!command.archive.empty() && !command.sets.empty()) {
+  if (!command.inputs.empty() && !command.sets.empty()) {
     refuse("--set", "allowed only with --scenario: an archive has its own parameters");
   }
   if (!command.scenario.empty() &&
@@ -266,10 +275,11 @@ void add_figure_command(CommandLine& line) {
   Command command(line, "figure", "Draw one figure as SVG, PDF or CSV");
   command.text("name", "FIGURE", options->name,
                "The figure's name (see --list), or the paper's number as fig8");
-  command.text(
-      "archive", "ARCHIVE", options->archive,
-      "Folder that `simbench run --output` wrote; of a figure of a recording, the folder of\n"
-      "`simbench record` or a CSV file");
+  command.texts(
+      "archive", "ARCHIVE...", options->inputs,
+      "Folder that `simbench run --output` wrote; or a recording: the folder of `simbench\n"
+      "record`, bags, CSV or IBL files");
+  add_input_options(command, options->reading);
   command.flag("--list", options->list, "List the figures");
   command.text("--scenario", "SCENARIO", options->scenario,
                "Instead of ARCHIVE: name of a scenario or path of a scenario file");

@@ -17,8 +17,8 @@
 #include "evaluation/fit/fit_check.h"
 #include "evaluation/run/evaluate.h"
 #include "recording/recording_folder.h"
+#include "reports/recordings/fit_report.h"
 #include "reports/results/results_answer.h"
-#include "reports/rigs/fit_report.h"
 #include "reports/text/output_file.h"
 #include "sim/rig/simulation.h"
 

@@ -1,13 +1,11 @@
 
-#include <chrono>
-#include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/answer.h"
-#include "app/interrupt.h"
 #include "app/recorded_streams.h"
 #include "app/recordings.h"
 #include "app/results.h"
@@ -16,11 +14,8 @@
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
 #include "cli/progress.h"
-#include "evaluation/replay/replay.h"
-#include "recording/recording.h"
-#include "reports/archive/archive.h"
+#include "reports/recordings/stream_blocks.h"
 #include "reports/results/results_answer.h"
-#include "reports/rigs/replay_report.h"
 
 namespace simbench::cli {
 namespace {
@@ -30,114 +25,77 @@ Takes a folder that `simbench record` wrote, and prints the table of the recorde
 what it finds of a recording that was cut off or is damaged, and notes that.
 
 Or takes files of real cameras, by their content: bags of the RealSense SDK, of ROS 1 and of ROS 2
-(MCAP, SQLite, a folder of them), and the CSV of librealsense's rs-data-collect:
+(MCAP, SQLite, a folder of them), IBL's files, and the CSV of librealsense's rs-data-collect:
   Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
 one file per camera, or one file of several cameras with two more columns, `camera` and `host`;
---columns reads other CSV. Arrivals of several cameras must count from one instant. It runs
-device_time and gathering on these files; host_sync cannot be replayed.
+--columns reads other CSV. Arrivals of several cameras must count from one instant. A pipeline of
+files is device_time[+gathering], since host_sync cannot be run again; without a choice each
+device_time that needs stamps alone, with yoon2021.
 
 Examples:
   simbench replay monday                            a recording folder
   simbench replay monday --pipelines genlock --format markdown
   simbench replay front.bag back.bag
-  simbench replay front.csv
-  simbench replay front.csv back.csv --format json > replay.json
-  simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
+  simbench replay a.bag b.bag --pipelines hull_300,hull_300+genlock --format markdown
+  simbench replay rig.csv --output results/rig      an archive for report, compare and gate
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
 struct ReplayOptions {
-  std::vector<std::string> files;
-  InputOptions inputs;
-  std::vector<std::string> pipelines;
+  std::vector<std::string> inputs;
+  InputOptions reading;
+  app::StreamScoring scoring;
   std::string format;
   std::string output;
   std::vector<std::string> command;
 };
 
-std::string replay_text(const evaluation::Replay& replay, const ReplayOptions& options) {
-  if (options.format == "json") return reports::replay_json(replay, options.files);
-  if (options.format == "csv") return reports::replay_csv(replay);
-  return reports::replay_table(replay);
-}
-
-// Refuses options that need a recording folder.
-void check_options_for_files(const ReplayOptions& options) {
-  if (options.format == "markdown") {
-    throw scenarios::InputError("--format: found 'markdown', allowed with files: table, json, csv");
-  }
-  if (!options.pipelines.empty()) {
-    throw scenarios::InputError("--pipelines: only a recording folder has pipelines");
-  }
-}
-
-void end_if_interrupted() {
-  if (app::InterruptHandler::raised()) throw RecordingCancelled();
-}
-
 // Nothing after Ctrl-C.
-std::optional<evaluation::Replay> replay_files(std::vector<CameraStream> streams) {
-  return watched<evaluation::Replay>(
-      [&](const evaluation::Progress& progress) {
-        return evaluation::run_replay(std::move(streams),
-                                      [&](std::uint64_t done, std::uint64_t total) {
-                                        progress(done, total);
-                                        end_if_interrupted();
-                                      });
-      },
-      {.unit = "stamp"});
+std::optional<app::RecordedRun> recorded_run(const ReplayOptions& options) {
+  std::optional<app::RecordedRun> run;
+  if (const auto folder = app::recording_folder_of(options.inputs)) {
+    if (!options.scoring.stream.empty() || options.scoring.genlock) {
+      throw scenarios::InputError(
+          "--stream, --genlock: allowed with files; a recording folder has a scenario, which "
+          "states "
+          "them");
+    }
+    run.emplace(*folder);
+  } else if (auto recorded = read_inputs(options.inputs, options.reading)) {
+    run.emplace(options.inputs, std::move(*recorded), options.scoring);
+  }
+  return run;
 }
 
-int run_files(const ReplayOptions& options) {
-  check_options_for_files(options);
-  reports::Provenance provenance;
-  provenance.command = options.command;
-  provenance.started = std::chrono::system_clock::now();
-  std::unique_ptr<reports::OutputFolder> output;
-  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
-  auto recordings = read_inputs(options.files, options.inputs);
-  if (!recordings) return kInterrupted;
-  const auto replayed = replay_files(std::move(recordings->streams));
-  if (!replayed) return kInterrupted;
-  const evaluation::Replay& replay = *replayed;
-  print_warnings(replay.warnings);
+void print_notes(const app::RecordedRun& run, const evaluation::Results& results) {
+  print_warnings(results.warnings);
+  for (const std::string& note : app::capture_notes(results)) print_note(note);
+  if (run.streams() == nullptr) return;
+  for (const std::string& note : run.streams()->notes()) print_note(note);
   print_note("host_sync cannot be replayed; only device_time and gathering were run");
-  provenance.finished = std::chrono::system_clock::now();
-  if (output) {
-    output->file("manifest.json") << reports::manifest_json(provenance, {{"files", options.files}});
-    output->file("results.json") << reports::replay_json(replay, options.files);
-    reports::write_replay_frames(replay, output->file("frames.csv"));
-    output->publish();
-    print_note("results written to " + options.output);
-  }
-  print_result(replay_text(replay, options));
-  return kOk;
-}
-
-int run_folder(const std::string& folder, const ReplayOptions& options) {
-  app::RunArchive archive(options.command);
-  const app::RecordedRun run(folder);
-  const std::vector<std::string> pipelines = run.chosen(options.pipelines);
-  for (const std::string& note : run.missing()) print_note(note);
-  archive.open(options.output);
-  const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
-    return run.evaluate(pipelines, !options.output.empty(), progress);
-  });
-  if (!results) return kInterrupted;
-  print_warnings(results->warnings);
-  for (const std::string& note : app::capture_notes(*results)) print_note(note);
-  if (archive.write(*results, run.scenario())) {
-    print_note("results written to " + options.output);
-  }
-  print_result(app::results_text(
-      *results, run.scenario(), options.format, app::Detail::kAll,
-      reports::results_answer(*results, app::ranked_by(run.scenario()), nullptr)));
-  return kOk;
 }
 
 int run_replay(const ReplayOptions& options) {
-  const std::optional<std::string> folder = app::recording_folder_of(options.files);
-  return folder ? run_folder(*folder, options) : run_files(options);
+  app::RunArchive archive(options.command);
+  archive.open(options.output);
+  const std::optional<app::RecordedRun> run = recorded_run(options);
+  if (!run) return kInterrupted;
+  const std::vector<std::string> pipelines = run->chosen(options.scoring.pipelines);
+  for (const std::string& note : run->missing()) print_note(note);
+  const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
+    return run->evaluate(pipelines, !options.output.empty(), progress);
+  });
+  if (!results) return kInterrupted;
+  print_notes(*run, *results);
+  if (archive.write(*results, run->scenario())) {
+    print_note("results written to " + options.output);
+  }
+  std::vector<reports::Block> more;
+  if (run->streams() != nullptr) more.push_back(reports::frames_block(run->streams()->streams()));
+  print_result(app::results_text(
+      *results, run->scenario(), options.format, app::Detail::kAll,
+      reports::results_answer(*results, app::ranked_by(run->scenario()), nullptr), more));
+  return kOk;
 }
 
 }  // namespace
@@ -145,17 +103,23 @@ int run_replay(const ReplayOptions& options) {
 void add_replay_command(CommandLine& line) {
   auto options = std::make_shared<ReplayOptions>();
   options->command = line.arguments;
-  Command command(
-      line, "replay",
-      "Score a recording folder, or device_time and gathering on files of real cameras");
-  command.texts("recordings", "INPUT...", options->files, kInputsText).required();
-  add_input_options(command, options->inputs);
-  command.list("--pipelines", "PIPELINE,...", options->pipelines,
-               "With a folder: only these of the recorded pipelines, in this order");
-  command.format(options->format, {"table", "markdown", "json", "csv"});
+  Command command(line, "replay",
+                  "Score a recording: a folder of `simbench record`, or files of real cameras");
+  command.texts("recordings", "INPUT...", options->inputs, kInputsText).required();
+  add_input_options(command, options->reading);
+  command.list("--pipelines", "PIPELINE,...", options->scoring.pipelines,
+               "With a folder: only these of the recorded pipelines, in this order. With files:\n"
+               "these, as device_time[+gathering]");
+  command.text("--stream", "NAME", options->scoring.stream,
+               "With files: score this kind of stream. Default: the one that most cameras have");
+  command.flag("--genlock", options->scoring.genlock,
+               "With files: one trigger pulse started all cameras (GenLock), so that the order of\n"
+               "frames tells which belong together. Default: the gathered sets are scored,\n"
+               "unverified");
+  command.format(options->format, {"table", "markdown", "latex", "json", "csv", "tidy"});
   command.text("-o,--output", "DIR", options->output,
-               "Write manifest.json, results.json and frames.csv (for a recording folder also\n"
-               "hosts.csv) to this folder. Replaces an earlier result there");
+               "Write manifest.json, results.json, frames.csv and hosts.csv to this folder, as\n"
+               "`simbench run` does. Replaces an earlier result there");
   command.footer(kReplayExamples);
   command.runs([options] { return run_replay(*options); });
 }

@@ -16,10 +16,10 @@
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "reports/recordings/prediction_report.h"
 #include "reports/results/budget_report.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/results_answer.h"
-#include "reports/rigs/prediction_report.h"
 
 namespace simbench::cli {
 namespace {

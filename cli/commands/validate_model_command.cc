@@ -23,9 +23,9 @@
 #include "evaluation/statistics/statistics.h"
 #include "hardware/experiment/network_sandbox.h"
 #include "hardware/experiment/stack_delays.h"
-#include "reports/rigs/measured_study.h"
-#include "reports/rigs/model_gap_report.h"
-#include "reports/rigs/stack_study.h"
+#include "reports/recordings/measured_study.h"
+#include "reports/recordings/model_gap_report.h"
+#include "reports/recordings/stack_study.h"
 
 namespace simbench::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "evaluation/replay/replay.h"
+#include "evaluation/frames/camera_statistics.h"
 #include "recording/counted.h"
 
 namespace simbench::evaluation {
@@ -36,7 +36,7 @@ class Findings {
  public:
   explicit Findings(const Diagnosis& diagnosis) : diagnosis_(diagnosis) {
     for (const CameraDiagnosis& camera : diagnosis.cameras) {
-      if (camera.facts.frames == 0) continue;
+      if (camera.facts.account.delivered == 0) continue;
       Presence& host = hosts_[camera.host];
       host.first_s = std::min(host.first_s, camera.facts.first_arrival_s);
       host.last_s = std::max(host.last_s, camera.facts.last_arrival_s);
@@ -92,7 +92,7 @@ class Findings {
   }
 
   void add_too_little() {
-    const std::int64_t frames = camera_->facts.frames;
+    const std::int64_t frames = camera_->facts.account.delivered;
     add("too_few_frames", frames == 1 ? "one frame: too few for a diagnosis"
                           : frames > 1
                               ? fmt::format("{} frames, but their stamps do not advance", frames)
@@ -137,7 +137,7 @@ class Findings {
   }
 
   static bool is_enough(const CameraDiagnosis& camera) {
-    return camera.facts.frames >= 2 && camera.facts.period_ms > 0;
+    return camera.facts.account.delivered >= 2 && camera.facts.period_ms > 0;
   }
 
   // One finding for all cameras of a host that move together.
@@ -171,37 +171,37 @@ class Findings {
   }
 
   void add_lost() {
-    const StreamFacts& facts = camera_->facts;
-    if (!facts.counted) {
-      if (facts.skipped_pulses == 0) return;
+    const FrameAccount& account = camera_->facts.account;
+    if (!camera_->facts.counted) {
+      if (account.unknown == 0) return;
       add("missing_frames",
           fmt::format("{} without a frame: lost or never exposed, which nothing tells without a "
                       "frame counter",
-                      counted(facts.skipped_pulses, "period")));
+                      counted(account.unknown, "period")));
       return;
     }
-    if (facts.lost_frames > 0) {
+    if (account.lost > 0) {
       add("lost_frames", fmt::format("{} lost after the camera had counted them: in the "
                                      "camera, on USB or in the host",
-                                     counted(facts.lost_frames, "frame")));
+                                     counted(account.lost, "frame")));
     }
-    if (facts.skipped_pulses > 0) {
+    if (account.never_exposed > 0) {
       add("skipped_pulses",
           fmt::format("{} never exposed: periods that its counter did not count, because "
                       "the camera missed triggers or there were none",
-                      counted(facts.skipped_pulses, "frame")));
+                      counted(account.never_exposed, "frame")));
     }
-    if (facts.counter_restarts > 0) {
+    if (account.counter_restarts > 0) {
       add("counter_restarts",
           fmt::format("its frame counter stood still or went back {}: the camera was restarted, or "
                       "frames arrived twice",
-                      times(facts.counter_restarts)));
+                      times(account.counter_restarts)));
     }
-    if (facts.counter_jumps > 0) {
+    if (account.counter_jumps > 0) {
       add("counter_jumps",
           fmt::format("its frame counter jumps {} by more frames than the time between two allows; "
                       "these are not counted as lost",
-                      times(facts.counter_jumps)));
+                      times(account.counter_jumps)));
     }
   }
 
@@ -382,9 +382,9 @@ class Findings {
 };
 
 // Kinds of streams in order of occurrence, depth before all others: it is what triggers drive.
-std::vector<std::string> kinds_of(const std::vector<CameraStream>& streams) {
+std::vector<std::string> kinds_of(const std::vector<RecordedStream>& streams) {
   std::vector<std::string> kinds;
-  for (const CameraStream& stream : streams) {
+  for (const RecordedStream& stream : streams) {
     if (std::find(kinds.begin(), kinds.end(), stream.stream) == kinds.end()) {
       kinds.push_back(stream.stream);
     }
@@ -409,15 +409,15 @@ GroupVerdict judge_kind(const std::string& kind, Diagnosis& diagnosis,
 }
 
 // Compares every other stream of a camera with that of its first kind.
-std::vector<PairDiagnosis> pairs_of(const std::vector<CameraStream>& streams,
+std::vector<PairDiagnosis> pairs_of(const std::vector<RecordedStream>& streams,
                                     const std::vector<std::string>& kinds) {
   std::vector<PairDiagnosis> pairs;
-  for (const CameraStream& stream : streams) {
-    const CameraStream* first = &stream;
-    const auto rank = [&kinds](const CameraStream& s) {
+  for (const RecordedStream& stream : streams) {
+    const RecordedStream* first = &stream;
+    const auto rank = [&kinds](const RecordedStream& s) {
       return std::find(kinds.begin(), kinds.end(), s.stream);
     };
-    for (const CameraStream& other : streams) {
+    for (const RecordedStream& other : streams) {
       if (other.camera == stream.camera && rank(other) < rank(*first)) first = &other;
     }
     if (first == &stream) continue;
@@ -458,9 +458,9 @@ std::string called_camera(const std::string& name) {
   return name.starts_with("camera") ? name : "camera " + name;
 }
 
-Diagnosis diagnose(const std::vector<CameraStream>& streams, const DiagnoseOptions& options) {
+Diagnosis diagnose(const std::vector<RecordedStream>& streams, const DiagnoseOptions& options) {
   Diagnosis diagnosis;
-  for (const CameraStream& stream : streams) {
+  for (const RecordedStream& stream : streams) {
     diagnosis.cameras.push_back({.camera = stream.camera,
                                  .host = options.one_host ? "" : stream.host,
                                  .stream = stream.stream,

@@ -8,8 +8,8 @@
 //
 // Streams (diagnose_stream.cc): a lasting change between arrivals and sensor stamps is a jump, of
 // whole periods (the camera's stamps slipped) or of any length (a clock was set). Arrivals are
-// compared with jumps taken out. The first 5 s of recordings of 20 s and more are discarded:
-// cameras are unsteady there.
+// compared with jumps taken out. The first 5 s of recordings of 20 s and more are discarded, since
+// cameras are unsteady there; the account of frames alone covers them too (frame_account.h).
 //
 // Groups (diagnose_group.cc): the cameras that have one kind of stream follow one trigger if their
 // periods in host time agree within the fits' uncertainty (four standard deviations), also at a
@@ -34,6 +34,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/frames/frame_account.h"
 #include "evaluation/statistics/statistics.h"
 #include "recording/recorded_streams.h"
 
@@ -56,7 +57,6 @@ struct DelayBurst {
 };
 
 struct StreamFacts {
-  std::int64_t frames = 0;  // all
   double first_arrival_s = kNan;
   double last_arrival_s = kNan;
   double longest_gap_s = kNan;  // between two arrivals
@@ -70,18 +70,15 @@ struct StreamFacts {
   double host_period_ms = kNan;
   double host_period_sd_ppm = kNan;  // standard deviation of that, relative
   // Events.
-  std::int64_t lost_frames = 0;       // counted by the camera, but never arrived
-  std::int64_t skipped_pulses = 0;    // periods that the counter did not count
-  std::int64_t counter_restarts = 0;  // the counter stood still or went back
-  std::int64_t counter_jumps = 0;     // it went up by more frames than the time allows
-  std::int64_t repeated_stamps = 0;   // frames with the stamp of the frame before
+  FrameAccount account;              // of all frames, the first seconds too
+  std::int64_t repeated_stamps = 0;  // frames with the stamp of the frame before
   std::int64_t backward_stamps = 0;
   std::int64_t backward_arrivals = 0;
   std::int64_t future_stamps = 0;  // frames that arrived earlier than their stamp allows
   double future_ms = 0;            // by how much, at most
   std::int64_t wraps = 0;          // of the 32-bit microsecond register
   bool global_time = false;        // stamps count from 1970: they are no camera's
-  // Of the recording: CameraStream has what they mean.
+  // Of the recording: RecordedStream has what they mean.
   bool counted = true;
   bool stamped_by_host = false;
   double least_delay_ms = kNan;  // of arrivals after stamps, if a host made those; 1 % are below
@@ -95,7 +92,7 @@ struct StreamFacts {
 };
 
 // Frames as recorded, not unwrapped, in order of delivery.
-StreamFacts stream_facts(const CameraStream& stream);
+StreamFacts stream_facts(const RecordedStream& stream);
 
 // Two streams of one camera compared, such as depth and colour.
 //
@@ -191,7 +188,7 @@ struct Diagnosis {
 // "camera front"; a name that says so itself alone: "camera11".
 std::string called_camera(const std::string& name);
 
-Diagnosis diagnose(const std::vector<CameraStream>& streams, const DiagnoseOptions& options);
+Diagnosis diagnose(const std::vector<RecordedStream>& streams, const DiagnoseOptions& options);
 
 }  // namespace simbench::evaluation
 

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "evaluation/diagnosis/diagnose.h"
-#include "evaluation/replay/replay.h"
+#include "evaluation/frames/camera_statistics.h"
+#include "evaluation/frames/frame_account.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -22,8 +23,7 @@ constexpr std::ptrdiff_t kJumpWindow = 15;  // frames on either side
 constexpr std::ptrdiff_t kLeastJumpWindow = 5;
 constexpr double kWholePeriod = 0.15;  // how far from a whole number of periods a slip may be
 constexpr double kMostPeriods = 1000;
-constexpr std::size_t kLongestSpan = 30;  // frames
-constexpr double kPassingS = 5;           // a step that is undone sooner is lateness
+constexpr double kPassingS = 5;  // a step that is undone sooner is lateness
 constexpr double kLeastFutureMs = 5;
 constexpr double kLeastBurstMs = 10;
 constexpr double kBurstSpreads = 5;  // of the upper tenth's distance from the median
@@ -71,48 +71,6 @@ void note_arrivals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   }
 }
 
-// Two successive frames, `periods` apart: counts frames that only the counter has, and periods that
-// it lacks.
-void note_counter(const StampedFrame& before, const StampedFrame& now, double periods,
-                  StreamFacts& facts) {
-  if (now.counter <= before.counter) {
-    ++facts.counter_restarts;
-    return;
-  }
-  if (!is_counter_gap(now.counter - before.counter, before, now, facts.period_ms)) {
-    ++facts.counter_jumps;
-    return;
-  }
-  const auto counted = static_cast<std::int64_t>(now.counter - before.counter);
-  facts.lost_frames += counted - 1;
-  if (periods > kMostPeriods) return;  // a clock was set, or a pause
-  facts.skipped_pulses += std::max<std::int64_t>(0, std::llround(periods) - counted);
-}
-
-// The period by the camera's clock; nothing if the stamps do not advance. The median over longer
-// spans, since with alternating intervals the median interval is one of the two kinds.
-std::optional<double> stream_period(std::span<const StampedFrame> frames) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    if (interval_ms(frames, i) > 0) intervals.push_back(interval_ms(frames, i));
-  }
-  if (intervals.empty()) return std::nullopt;
-  const double interval = median(intervals);
-  const std::size_t span = std::min<std::size_t>(kLongestSpan, frames.size() / 4);
-  if (span < 2) return interval;
-  std::vector<double> periods(1);
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    periods.push_back(periods.back() + std::round(interval_ms(frames, i) / interval));
-  }
-  std::vector<double> means;
-  for (std::size_t i = span; i < frames.size(); ++i) {
-    const double count = periods[i] - periods[i - span];
-    const double length = difference_ms(frames[i].sensor.count(), frames[i - span].sensor.count());
-    if (count > 0 && length > 0) means.push_back(length / count);
-  }
-  return means.empty() ? interval : median(std::move(means));
-}
-
 // From the ends, which are enough to find stamps of another unit; without jumps.
 void note_drift(std::span<const StampedFrame> frames, StreamFacts& facts) {
   constexpr std::size_t kFramesForDrift = 30;
@@ -124,7 +82,7 @@ void note_drift(std::span<const StampedFrame> frames, StreamFacts& facts) {
   facts.drift_ppm = (host_ms / device_ms - 1) * 1e6;
 }
 
-// Counts the missing periods of the intervals, and their deviations from whole periods.
+// The period of each frame, and the deviations of the intervals from whole periods.
 void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   facts.periods.assign(1, 0);
   std::vector<double> deviations;
@@ -138,7 +96,6 @@ void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
     if (interval < 0) ++facts.backward_stamps;
     if (frames[i].sensor == frames[i - 1].sensor) ++facts.repeated_stamps;
     if (whole > 0 && std::abs(deviation) < kOnGrid * facts.period_ms) ++on_grid;
-    note_counter(frames[i - 1], frames[i], whole, facts);
   }
   facts.interval_jitter_ms = standard_deviation(deviations);
   facts.on_grid_share = static_cast<double>(on_grid) / static_cast<double>(deviations.size());
@@ -349,19 +306,19 @@ std::int64_t register_difference(const StampedFrame& a, const StampedFrame& b) {
 
 }  // namespace
 
-StreamFacts stream_facts(const CameraStream& stream) {
+StreamFacts stream_facts(const RecordedStream& stream) {
   const std::span<const StampedFrame> recorded = stream.frames;
   StreamFacts facts;
   facts.counted = stream.counted;
   facts.stamped_by_host = stream.stamped_by_host;
-  facts.frames = static_cast<std::int64_t>(recorded.size());
   if (recorded.empty()) return facts;
   facts.wraps = count_wraps(recorded);
   facts.global_time = counts_from_1970(recorded);
   note_arrivals(recorded, facts);
   const std::vector<StampedFrame> all = unwrapped(recorded);
+  facts.account = frame_account(all, stream.counted);
   const std::span<const StampedFrame> frames = without_warm_up(all);
-  const std::optional<double> period_ms = stream_period(frames);
+  const std::optional<double> period_ms = stream_period_ms(frames);
   if (!period_ms) return facts;
   facts.period_ms = *period_ms;
   note_intervals(frames, facts);

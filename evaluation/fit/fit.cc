@@ -8,7 +8,7 @@
 #include <numeric>
 #include <span>
 
-#include "evaluation/replay/replay.h"
+#include "evaluation/frames/camera_statistics.h"
 #include "laws/lower_hull.h"
 #include "recording/counted.h"
 
@@ -191,7 +191,7 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
   fit.camera = stream.camera;
   fit.kind = stream.kind;
   fit.frames = statistics.frames;
-  fit.missing = statistics.missing_frames;
+  fit.account = stream.account;
   fit.span_s = statistics.span_s;
   fit.skew_ppm = skew_of_slope_ppm(line.slope);
   fit.skew_error_ppm = skew_error_ppm(points);
@@ -216,7 +216,7 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
 double skew_of_slope_ppm(double slope) { return -slope / (1 + slope) * 1e6; }
 
 double RigFit::drop_share() const {
-  return static_cast<double>(missing) / static_cast<double>(frames + missing);
+  return static_cast<double>(lost) / static_cast<double>(delivered + lost);
 }
 
 std::vector<double> quantile_table(const std::vector<double>& sorted) {
@@ -236,14 +236,15 @@ RigFit fit_rig(const FitInput& input) {
     fit.streams.push_back(fit_stream(input.cameras[stream.camera].name, stream));
     const StreamFit& added = fit.streams.back();
     fit.frames += added.frames;
-    fit.missing += added.missing;
+    fit.delivered += added.account.delivered;
+    fit.lost += added.account.lost;
     fit.excess_ms.insert(fit.excess_ms.end(), added.excess_ms.begin(), added.excess_ms.end());
   }
   fit.skew_ppm = skews_of(input, fit.streams);
   std::sort(fit.excess_ms.begin(), fit.excess_ms.end());
   fit.delivery_quantiles_ms = quantile_table(fit.excess_ms);
   fit.correlation = correlation_of(fit.streams);
-  fit.drop_interval = binomial_interval(fit.missing, fit.frames + fit.missing);
+  fit.drop_interval = binomial_interval(fit.lost, fit.delivered + fit.lost);
   fit.network = fit_exchanges(input);
   return fit;
 }

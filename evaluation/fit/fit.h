@@ -98,7 +98,7 @@ struct StreamFit {
   std::size_t camera = 0;
   std::string kind;
   std::int64_t frames = 0;
-  std::int64_t missing = 0;  // by gaps of the counter
+  FrameAccount account;  // of the whole recording
   double span_s = 0;
   double skew_ppm = 0;  // device rate / host rate - 1, lower hull
   double skew_error_ppm = 0;
@@ -128,7 +128,8 @@ struct RigFit {
   std::vector<double> delivery_quantiles_ms;
   std::optional<FittedValue> correlation;  // nothing: too few pairs, or no jitter at all
   std::int64_t frames = 0;
-  std::int64_t missing = 0;
+  std::int64_t delivered = 0;  // of the whole recording, as are the lost ones
+  std::int64_t lost = 0;
   Interval drop_interval;  // 95 %
   NetworkFit network;
 

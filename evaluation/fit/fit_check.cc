@@ -46,7 +46,7 @@ FitCheck check_fit(const RigFit& recorded, const scenarios::Scenario& model,
   constexpr std::int64_t kMost = 200'000;
   const auto streams = static_cast<std::int64_t>(recorded.streams.size());
   const std::int64_t pulses =
-      std::clamp((recorded.frames + recorded.missing) / streams, kFewest, kMost);
+      std::clamp((recorded.frames + recorded.lost) / streams, kFewest, kMost);
   const RigFit simulated = simulate_fit(model, pulses, make_world);
   FitCheck check;
   check.recorded = fit_side(recorded);

@@ -7,7 +7,8 @@
 #include <variant>
 
 #include "algorithms/ports/time.h"
-#include "evaluation/replay/replay.h"
+#include "evaluation/frames/camera_statistics.h"
+#include "evaluation/frames/frame_account.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -70,21 +71,25 @@ FitInput FitInputSink::take() {
     const std::int64_t begin_ns = stamps.front().arrival_ns + from_ms(options_.warm_up_ms).count();
     std::vector<StampedFrame> frames;
     for (const Stamps& s : stamps) {
-      if (s.arrival_ns < begin_ns) continue;
       const std::int64_t device_us = has_frame_stamps ? s.frame_us : s.sensor_us;
       frames.push_back({.counter = s.counter,
                         .sensor = Nanoseconds(device_us * 1000),
                         .arrival = Nanoseconds(s.arrival_ns)});
     }
+    frames = unwrapped(frames);
+    const FrameAccount account = frame_account(frames, /*counted=*/true);
+    std::erase_if(
+        frames, [begin_ns](const StampedFrame& frame) { return frame.arrival.count() < begin_ns; });
     input_.streams.push_back({.camera = key.first,
                               .kind = std::string(to_text(key.second)),
-                              .frames = unwrapped(frames)});
+                              .frames = std::move(frames),
+                              .account = account});
   }
   stamps_.clear();
   return std::move(input_);
 }
 
-FitInput fit_input(const std::vector<CameraStream>& streams, bool one_host) {
+FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host) {
   FitInput input;
   const auto number_of = [](auto& all, const std::string& name, auto&& add) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& known) {
@@ -98,7 +103,7 @@ FitInput fit_input(const std::vector<CameraStream>& streams, bool one_host) {
     all.push_back(add());
     return all.size() - 1;
   };
-  for (const CameraStream& stream : streams) {
+  for (const RecordedStream& stream : streams) {
     if (counts_from_1970(stream.frames)) {
       throw FitError(
           fmt::format("camera {}: found stamps that count from 1970, allowed stamps of the "
@@ -111,8 +116,10 @@ FitInput fit_input(const std::vector<CameraStream>& streams, bool one_host) {
     const std::size_t camera = number_of(input.cameras, stream.camera, [&] {
       return FitCamera{stream.camera, static_cast<std::uint32_t>(host_number)};
     });
+    std::vector<StampedFrame> frames = unwrapped(stream.frames);
+    const FrameAccount account = frame_account(frames, stream.counted);
     input.streams.push_back(
-        {.camera = camera, .kind = stream.stream, .frames = unwrapped(stream.frames)});
+        {.camera = camera, .kind = stream.stream, .frames = std::move(frames), .account = account});
   }
   return input;
 }
@@ -125,6 +132,8 @@ std::pair<FitInput, FitInput> halves(const FitInput& input) {
     const auto middle = static_cast<std::ptrdiff_t>(first.size() / 2);
     first.erase(first.begin() + middle, first.end());
     second.erase(second.begin(), second.begin() + middle);
+    result.first.streams[i].account = frame_account(first, /*counted=*/true);
+    result.second.streams[i].account = frame_account(second, /*counted=*/true);
   }
   return result;
 }

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/frames/frame_account.h"
 #include "recording/event.h"
 #include "recording/recorded_streams.h"
 #include "recording/recording.h"
@@ -43,6 +44,7 @@ struct FitStream {
   std::size_t camera = 0;
   std::string kind;
   std::vector<StampedFrame> frames;
+  FrameAccount account{};  // of the whole recording, also of what is discarded at its start
 };
 
 struct FitInput {
@@ -87,7 +89,7 @@ class FitInputSink final : public RecordingSink {
 
 // Returns the input from files of real cameras. `one_host`: one computer stamped all arrivals,
 // whatever the files state.
-FitInput fit_input(const std::vector<CameraStream>& streams, bool one_host);
+FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host);
 
 // Returns the halves of every stream, for a fit to one and a test on the other.
 std::pair<FitInput, FitInput> halves(const FitInput& input);

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "evaluation/replay/replay.h"
+#include "evaluation/frames/camera_statistics.h"
 #include "evaluation/statistics/statistics.h"
 #include "recording/collected.h"
 #include "recording/counted.h"
@@ -68,9 +68,9 @@ std::string correlation_line(const RigFit& fit) {
 
 std::string drop_line(const RigFit& fit) {
   return fmt::format(
-      "/cameras/drop_probability: {} of {} frames missing by the counters, 95 % interval {:.3g} to "
+      "/cameras/drop_probability: {} of {} frames lost by the counters, 95 % interval {:.3g} to "
       "{:.3g}",
-      fit.missing, fit.frames + fit.missing, fit.drop_interval.low, fit.drop_interval.high);
+      fit.lost, fit.delivered + fit.lost, fit.drop_interval.low, fit.drop_interval.high);
 }
 
 // The root mean square of the existing values.

@@ -190,24 +190,24 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_folder(const CaptureName& 
 }
 
 // "Depth 0" of the SDK's files, "depth" and "color" of ROS.
-bool is_depth(const CameraStream& stream) {
+bool is_depth(const RecordedStream& stream) {
   return stream.stream.starts_with("Depth") || stream.stream.starts_with("depth");
 }
-bool is_colour(const CameraStream& stream) {
+bool is_colour(const RecordedStream& stream) {
   return stream.stream.starts_with("Colo") || stream.stream.starts_with("colo");
 }
 
 // The kind as which a CSV's stream is played. Infrared images are exposed with the depth images, so
 // they stand for depth if a camera has none.
-std::optional<StreamKind> stream_kind(const CameraStream& stream,
-                                      const std::vector<CameraStream>& streams) {
+std::optional<StreamKind> stream_kind(const RecordedStream& stream,
+                                      const std::vector<RecordedStream>& streams) {
   if (is_colour(stream)) return StreamKind::kColour;
-  for (const CameraStream& other : streams) {
+  for (const RecordedStream& other : streams) {
     if (other.camera != stream.camera || is_colour(other)) continue;
     const bool better = is_depth(other) && !is_depth(stream);
     if (better) return std::nullopt;
   }
-  for (const CameraStream& other : streams) {  // the first of its kind
+  for (const RecordedStream& other : streams) {  // the first of its kind
     if (other.camera == stream.camera && !is_colour(other) && is_depth(other) == is_depth(stream)) {
       return &other == &stream ? std::optional(StreamKind::kDepth) : std::nullopt;
     }
@@ -229,7 +229,7 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_file(const std::string& pa
                                                            const std::vector<RigCamera>& wanted) {
   const auto [streams, notes] = bags::read_recorded_files({path}, {});
   std::vector<std::string> names;
-  for (const CameraStream& stream : streams) {
+  for (const RecordedStream& stream : streams) {
     if (std::find(names.begin(), names.end(), stream.camera) == names.end()) {
       names.push_back(stream.camera);
     }
@@ -237,7 +237,7 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_file(const std::string& pa
   Choice choice = choose(path, wanted, names);
   choice.cameras[choice.of_wanted.front()]->notes = notes;
   std::optional<std::int64_t> zero_ns;
-  for (const CameraStream& stream : streams) {
+  for (const RecordedStream& stream : streams) {
     for (const StampedFrame& frame : stream.frames) {
       zero_ns = std::min(zero_ns.value_or(frame.arrival.count()), frame.arrival.count());
     }

@@ -21,17 +21,17 @@ from .algorithms import (
 from .clock_runs import Clocks, clocks
 from .errors import Error, InputError, MissingPackage, OutputError
 from .results import Comparison, Result, compare, load, run
-from .rigs import Diagnosis, Replay, diagnose, replay
+from .rigs import Diagnosis, Inspection, diagnose, inspect, replay
 from .tables import table as _table
 
 _simbench.use_programs(os.path.dirname(os.path.abspath(__file__)))
 __version__: str = _simbench.version
 
 __all__ = [
-    "Clocks", "Comparison", "Diagnosis", "Error", "Frame", "InputError", "MissingPackage",
-    "OutputError", "Parameter", "Replay", "Result", "Sample", "capture_alignment", "clocks",
-    "compare", "describe", "device_time", "diagnose", "gathering", "host_sync", "list_scenarios",
-    "load", "pipeline", "replay", "run",
+    "Clocks", "Comparison", "Diagnosis", "Error", "Frame", "InputError", "Inspection",
+    "MissingPackage", "OutputError", "Parameter", "Result", "Sample", "capture_alignment", "clocks",
+    "compare", "describe", "device_time", "diagnose", "gathering", "host_sync", "inspect",
+    "list_scenarios", "load", "pipeline", "replay", "run",
 ]  # fmt: skip
 
 

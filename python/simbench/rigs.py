@@ -1,4 +1,4 @@
-"""Recordings of real cameras: replay and diagnosis."""
+"""Recordings of real cameras: scores, inspection and diagnosis."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 from . import _simbench
 from .progress import Progress
 from .results import Path, Result, _warn
-from .tables import array, notebook_html, page_text, paragraphs, records, table
+from .tables import array, notebook_html, page_text, paragraphs, table
 
 Paths = Union[Path, Sequence[Path]]
 
@@ -20,42 +20,42 @@ def _paths(of: Paths) -> List[str]:
     return [os.fspath(path) for path in of]
 
 
-class Replay:
-    """device_time and gathering over recorded stamps: what `simbench replay` prints of files."""
+class Inspection:
+    """What recordings have: what `simbench inspect` prints."""
 
-    def __init__(self, replay: _simbench.Replay) -> None:
-        self._replay = replay
+    def __init__(self, inspection: _simbench.Inspection) -> None:
+        self._inspection = inspection
 
     @property
     def notes(self) -> List[str]:
-        """What was left out or is doubtful, a line each."""
-        return self._replay.notes
+        """What was left out, a line each."""
+        return self._inspection.notes
 
     @property
-    def cameras(self) -> List[Dict[str, str]]:
+    def streams(self) -> List[Dict[str, str]]:
         """The streams, in the order of the field `camera` of frames(): camera, host, stream."""
-        return self._replay.cameras
-
-    @property
-    def table(self) -> Any:
-        """A row a stream and device_time, as `simbench replay --format csv` prints it."""
-        return table(records(self._replay.csv()))
+        return self._inspection.streams
 
     @property
     def data(self) -> Dict[str, Any]:
-        """All of it, as `simbench replay --format json` prints it."""
-        return json.loads(self._replay.json())
+        """All of it, as `simbench inspect --format json` prints it."""
+        return json.loads(self._inspection.json())
+
+    @property
+    def table(self) -> Any:
+        """A row a stream."""
+        return table([stream for file in self.data["files"] for stream in file["streams"]])
 
     def frames(self, device_times: Sequence[str] = ()) -> Any:
         """Every frame: a structured NumPy array, read-only, in the memory of the libraries.
 
-        Fields: camera (its place in `cameras`), counter, sensor_ns on the camera's clock, unwrapped,
+        Fields: camera (its place in `streams`), counter, sensor_ns on the camera's clock, unwrapped,
         arrival_ns on its host's; and global_ms_NAME for each of `device_times`.
         """
-        return array(self._replay.frames(list(device_times)))
+        return array(self._inspection.frames(list(device_times)))
 
     def __repr__(self) -> str:
-        return page_text(self._replay.text)
+        return page_text(self._inspection.text)
 
 
 class Diagnosis:
@@ -113,21 +113,24 @@ def replay(
     *,
     pipelines: Optional[Sequence[str]] = None,
     progress: Optional[bool] = None,
-) -> Union[Result, Replay]:
-    """Scores a recording folder, which gives a Result; or runs device_time and gathering on files
-    of real cameras, which gives a Replay."""
-    paths = _paths(recordings)
-    if len(paths) == 1 and _simbench.is_recording_folder(paths[0]):
-        with Progress(progress, "capture") as shown:
-            result = Result(
-                _simbench.score_recording(paths[0], list(pipelines or []), shown.callback), progress
-            )
-        _warn(result.notes)
-        return result
+) -> Result:
+    """Scores a recording: a folder of `simbench record`, or files of real cameras, whose pipelines
+    are device_time[+gathering]."""
+    with Progress(progress, "capture") as shown:
+        result = Result(
+            _simbench.score_recording(_paths(recordings), list(pipelines or []), shown.callback),
+            progress,
+        )
+    _warn(result.notes)
+    return result
+
+
+def inspect(recordings: Paths, *, progress: Optional[bool] = None) -> Inspection:
+    """Says what recordings have: streams, frames, clocks, and every stamp."""
     with Progress(progress, "stamp") as shown:
-        replayed = Replay(_simbench.replay_files(paths, shown.callback))
-    _warn(replayed.notes)
-    return replayed
+        found = Inspection(_simbench.inspect_files(_paths(recordings), shown.callback))
+    _warn(found.notes)
+    return found
 
 
 def diagnose(

@@ -1,27 +1,25 @@
-// Recordings of real cameras for the package: replay and diagnosis.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+// Recordings of real cameras for the package: inspection and diagnosis.
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/interrupt.h"
+#include "app/inspection.h"
 #include "app/recorded_streams.h"
+#include "app/stream_run.h"
 #include "evaluation/diagnosis/diagnose.h"
-#include "evaluation/replay/replay.h"
+#include "evaluation/frames/camera_statistics.h"
 #include "python/src/bindings.h"
 #include "python/src/rows.h"
 #include "python/src/work.h"
 #include "reports/page/diagnose_page.h"
-#include "reports/rigs/diagnose_report.h"
-#include "reports/rigs/replay_report.h"
-#include "scenarios/loader.h"
+#include "reports/recordings/diagnose_report.h"
+#include "reports/recordings/inspect_report.h"
 
 namespace py = pybind11;
 
@@ -30,10 +28,9 @@ namespace {
 
 using evaluation::Progress;
 
-struct ReplayedFiles {
-  evaluation::Replay replay{};
-  std::vector<std::string> files{};
-  std::vector<std::string> notes{};
+struct InspectedFiles {
+  std::vector<reports::Inspection> inspections{};
+  RecordedStreams recorded{};
 };
 
 struct DiagnosedFiles {
@@ -42,58 +39,22 @@ struct DiagnosedFiles {
   std::vector<std::string> notes{};
 };
 
-void stop_if_interrupted() {
-  if (app::InterruptHandler::raised()) throw RecordingCancelled();
-}
-
 RecordedStreams streams_of(const std::vector<std::string>& files, const py::object& on_progress) {
   return watched<RecordedStreams>(on_progress,
                                   [&](const Progress&) { return app::recorded_streams(files); });
 }
 
-std::shared_ptr<ReplayedFiles> replay_files(const std::vector<std::string>& files,
-                                            const py::object& on_progress) {
-  RecordedStreams rig = streams_of(files, on_progress);
-  auto replayed = std::make_shared<ReplayedFiles>();
-  replayed->files = files;
-  replayed->notes = std::move(rig.notes);
-  replayed->replay = watched<evaluation::Replay>(on_progress, [&](const Progress& progress) {
-    return evaluation::run_replay(std::move(rig.streams),
-                                  [&](std::uint64_t done, std::uint64_t total) {
-                                    progress(done, total);
-                                    stop_if_interrupted();
-                                  });
-  });
-  const std::vector<std::string>& more = replayed->replay.warnings;
-  replayed->notes.insert(replayed->notes.end(), more.begin(), more.end());
-  return replayed;
+std::shared_ptr<InspectedFiles> inspect_files(const std::vector<std::string>& files,
+                                              const py::object& on_progress) {
+  auto inspected = std::make_shared<InspectedFiles>();
+  inspected->recorded = streams_of(files, on_progress);
+  for (const std::string& file : files) inspected->inspections.push_back(app::inspected(file, {}));
+  return inspected;
 }
 
-// The places of these device_times among a camera's rows. Throws InputError for one that is not
-// there or did not run.
-std::vector<std::size_t> places_of(const evaluation::CameraReplay& camera,
-                                   const std::vector<std::string>& device_times) {
-  std::vector<std::size_t> places;
-  for (const std::string& name : device_times) {
-    const auto row =
-        std::ranges::find(camera.rows, name, &evaluation::DeviceTimeReplay::device_time);
-    if (row != camera.rows.end() && !row->needs_polls) {
-      places.push_back(static_cast<std::size_t>(row - camera.rows.begin()));
-      continue;
-    }
-    std::vector<std::string> known;
-    for (const auto& each : camera.rows) {
-      if (!each.needs_polls) known.push_back(each.device_time);
-    }
-    throw scenarios::InputError(
-        fmt::format("device_times: found '{}', allowed: {}", name, fmt::join(known, ", ")));
-  }
-  return places;
-}
-
-// Every frame, a row each of 8-byte cells: camera (its place), counter, stamps, and the global
-// stamps by these device_times.
-Rows replayed_frames(const ReplayedFiles& of, const std::vector<std::string>& device_times) {
+// Every frame, a row each of 8-byte cells: camera (its place among the streams), counter, stamps,
+// and the global stamps by these device_times.
+Rows stamped_frames(const InspectedFiles& of, const std::vector<std::string>& device_times) {
   constexpr std::size_t kCell = sizeof(std::int64_t);
   std::vector<RowField> fields = {{"camera", "<i8", 0},
                                   {"counter", "<u8", kCell},
@@ -102,24 +63,24 @@ Rows replayed_frames(const ReplayedFiles& of, const std::vector<std::string>& de
   for (const std::string& name : device_times) {
     fields.push_back({"global_ms_" + name, "<f8", fields.size() * kCell});
   }
-  std::size_t frames = 0;
-  for (const auto& camera : of.replay.cameras) frames += camera.frames.size();
+  const std::vector<RecordedStream>& streams = of.recorded.streams;
+  std::vector<evaluation::StampedStream> stamped;
+  if (!device_times.empty()) stamped = app::stamped_streams(streams, device_times, "device_times");
   std::vector<std::int64_t> cells;
-  cells.reserve(frames * fields.size());
-  for (std::size_t i = 0; i < of.replay.cameras.size(); ++i) {
-    const evaluation::CameraReplay& camera = of.replay.cameras[i];
-    const std::vector<std::size_t> places = places_of(camera, device_times);
-    std::optional<evaluation::GlobalStamps> stamps;
-    if (!places.empty()) stamps.emplace(camera);
-    for (const StampedFrame& frame : camera.frames) {
+  auto next = stamped.begin();
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const auto begin = next;
+    while (next != stamped.end() && next->stream == &streams[i]) ++next;
+    const std::vector<StampedFrame> frames = evaluation::unwrapped(streams[i].frames);
+    for (std::size_t frame = 0; frame < frames.size(); ++frame) {
       cells.insert(cells.end(),
-                   {static_cast<std::int64_t>(i), static_cast<std::int64_t>(frame.counter),
-                    frame.sensor.count(), frame.arrival.count()});
-      if (!stamps) continue;
-      const std::vector<std::optional<GlobalTime>>& global = stamps->next();
-      for (const std::size_t place : places) {
-        const double ms =
-            global[place] ? to_ms(global[place]->time_since_epoch()) : evaluation::kNan;
+                   {static_cast<std::int64_t>(i), static_cast<std::int64_t>(frames[frame].counter),
+                    frames[frame].sensor.count(), frames[frame].arrival.count()});
+      for (std::size_t place = 0; place < device_times.size(); ++place) {
+        const bool is_there = begin + static_cast<std::ptrdiff_t>(place) < next;
+        const auto stamp = is_there ? begin[static_cast<std::ptrdiff_t>(place)].stamps[frame]
+                                    : std::optional<GlobalTime>();
+        const double ms = stamp ? to_ms(stamp->time_since_epoch()) : evaluation::kNan;
         cells.push_back(std::bit_cast<std::int64_t>(ms));
       }
     }
@@ -128,13 +89,13 @@ Rows replayed_frames(const ReplayedFiles& of, const std::vector<std::string>& de
   return Rows(std::move(cells), std::move(fields), row_bytes);
 }
 
-py::list cameras_of(const ReplayedFiles& of) {
-  py::list cameras;
-  for (const auto& camera : of.replay.cameras) {
-    cameras.append(py::dict(py::arg("camera") = camera.camera, py::arg("host") = camera.host,
-                            py::arg("stream") = camera.stream));
+py::list streams_list(const InspectedFiles& of) {
+  py::list streams;
+  for (const RecordedStream& stream : of.recorded.streams) {
+    streams.append(py::dict(py::arg("camera") = stream.camera, py::arg("host") = stream.host,
+                            py::arg("stream") = stream.stream));
   }
-  return cameras;
+  return streams;
 }
 
 std::shared_ptr<DiagnosedFiles> diagnose_files(const std::vector<std::string>& files,
@@ -161,15 +122,15 @@ std::string page_of(const DiagnosedFiles& of, const std::vector<std::string>& co
 void bind_recordings(pybind11::module_& module) {
   using namespace simbench;
   using python::DiagnosedFiles;
-  using python::ReplayedFiles;
-  py::class_<ReplayedFiles, std::shared_ptr<ReplayedFiles>>(module, "Replay")
-      .def_readonly("notes", &ReplayedFiles::notes)
-      .def_property_readonly("cameras", &python::cameras_of)
-      .def("csv", [](const ReplayedFiles& of) { return reports::replay_csv(of.replay); })
-      .def("json",
-           [](const ReplayedFiles& of) { return reports::replay_json(of.replay, of.files); })
-      .def("text", [](const ReplayedFiles& of) { return reports::replay_table(of.replay); })
-      .def("frames", &python::replayed_frames, py::call_guard<py::gil_scoped_release>());
+  using python::InspectedFiles;
+  py::class_<InspectedFiles, std::shared_ptr<InspectedFiles>>(module, "Inspection")
+      .def_property_readonly("notes", [](const InspectedFiles& of) { return of.recorded.notes; })
+      .def_property_readonly("streams", &python::streams_list)
+      .def("json", [](const InspectedFiles& of) { return reports::inspect_json(of.inspections); })
+      .def(
+          "text",
+          [](const InspectedFiles& of) { return plain(reports::inspect_document(of.inspections)); })
+      .def("frames", &python::stamped_frames, py::call_guard<py::gil_scoped_release>());
   py::class_<DiagnosedFiles, std::shared_ptr<DiagnosedFiles>>(module, "Diagnosis")
       .def_readonly("notes", &DiagnosedFiles::notes)
       .def("json",
@@ -183,6 +144,6 @@ void bind_recordings(pybind11::module_& module) {
       .def("head",
            [](const DiagnosedFiles& of) { return reports::diagnose_document(of.diagnosis).head; })
       .def("page", &python::page_of);
-  module.def("replay_files", &python::replay_files);
+  module.def("inspect_files", &python::inspect_files);
   module.def("diagnose_files", &python::diagnose_files);
 }

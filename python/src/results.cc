@@ -72,7 +72,7 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_pr
 std::shared_ptr<Run> load_archive(const std::string& path) {
   auto run = std::make_shared<Run>();
   run->archive = reports::read_archive(path);
-  if (!run->archive.scenario_json.empty()) {
+  if (!run->archive.scenario_json.empty() && !reports::is_of_files(run->archive)) {
     run->scenario =
         scenarios::load_scenario_text(run->archive.scenario_json, path + "/manifest.json");
   }
@@ -80,11 +80,11 @@ std::shared_ptr<Run> load_archive(const std::string& path) {
   return run;
 }
 
-std::shared_ptr<Run> score_recording(const std::string& folder,
+std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
                                      const std::vector<std::string>& pipelines,
                                      const py::object& on_progress) {
   auto run = std::make_shared<Run>();
-  run->recorded = std::make_shared<app::RecordedRun>(folder);
+  run->recorded = std::make_shared<app::RecordedRun>(app::recorded_run(inputs, {}, pipelines));
   const app::RecordedRun& recorded = *run->recorded;
   run->scenario = recorded.scenario();
   run->notes = recorded.missing();
@@ -92,7 +92,7 @@ std::shared_ptr<Run> score_recording(const std::string& folder,
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
     return recorded.evaluate(chosen, false, progress);
   });
-  run->archive.path = folder;
+  run->archive.path = recorded.path();
   run->archive.scenario_json = recorded.scenario().resolved_json();
   for (const auto& more : {run->results().warnings, app::capture_notes(run->results())}) {
     run->notes.insert(run->notes.end(), more.begin(), more.end());
@@ -349,7 +349,6 @@ void bind_run(py::module_& module) {
   module.def("simulate", &simulate);
   module.def("load_archive", &load_archive);
   module.def("score_recording", &score_recording);
-  module.def("is_recording_folder", &app::is_recording_folder);
 }
 
 void bind_comparison(py::module_& module) {

@@ -293,6 +293,11 @@ void read_manifest(const JsonFile& file, Archive& archive) {
 
 }  // namespace
 
+bool is_of_files(const Archive& archive) {
+  return !archive.scenario_json.empty() &&
+         Json::parse(archive.scenario_json).contains(kRecordingMember);
+}
+
 Archive read_archive(const std::string& path) {
   const bool is_folder = std::filesystem::is_directory(path);
   const std::filesystem::path folder = path;

@@ -61,6 +61,9 @@ evaluation::ResultKind read_result_kind(const JsonNode& root, const char* member
 // The members from_s and duration_s; only such files have them.
 evaluation::ClockPeriod read_clock_period(const JsonNode& root, evaluation::ResultKind kind);
 
+// The member of a scenario that files of other people were scored by (app/stream_run.h).
+inline constexpr const char* kRecordingMember = "recording";
+
 struct Archive {
   std::string path;                                        // as the user stated it
   std::string version = std::string(simbench::version());  // of the program that made it
@@ -74,6 +77,9 @@ struct Archive {
   // of the seeds, in seed order.
   evaluation::Results results;
 };
+
+// Whether it is of files of other people, so that no run can be repeated.
+bool is_of_files(const Archive& archive);
 
 // `path`: an archive's folder, or a results.json alone, without a manifest.
 Archive read_archive(const std::string& path);

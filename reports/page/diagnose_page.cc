@@ -5,9 +5,9 @@
 
 #include "reports/archive/archive.h"
 #include "reports/page/html_page.h"
-#include "reports/rigs/diagnose_answer.h"
-#include "reports/rigs/diagnose_figure.h"
-#include "reports/rigs/diagnose_report.h"
+#include "reports/recordings/diagnose_answer.h"
+#include "reports/recordings/diagnose_figure.h"
+#include "reports/recordings/diagnose_report.h"
 
 namespace simbench::reports {
 

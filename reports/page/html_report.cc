@@ -67,6 +67,10 @@ std::string scenario_details(const Archive& archive) {
   if (archive.scenario_json.empty()) {
     return "<p>A results.json alone holds neither the scenario nor the command that ran it.</p>\n";
   }
+  if (is_of_files(archive)) {
+    return html_scenario("The files and what was scored of them",
+                         Json::parse(archive.scenario_json).dump(2));
+  }
   return html_scenario(
       fmt::format("Saved to a file, it repeats the run: <code>simbench {} --scenario FILE --seeds "
                   "{} --first-seed {}</code>",

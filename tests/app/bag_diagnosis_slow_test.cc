@@ -19,14 +19,14 @@
 namespace simbench {
 namespace {
 
-using Rig = std::vector<CameraStream>;
+using Rig = std::vector<RecordedStream>;
 using std::chrono::milliseconds;
 
 constexpr int kFrames = 6000;  // 200 s
 constexpr Nanoseconds kPeriod = Nanoseconds(33'333'333);
 constexpr std::int64_t kRegisterNs = (std::int64_t{1} << 32) * 1000;
 
-bool are_equal(const CameraStream& a, const CameraStream& b) {
+bool are_equal(const RecordedStream& a, const RecordedStream& b) {
   return std::ranges::equal(a.frames, b.frames, [](const StampedFrame& x, const StampedFrame& y) {
     return x.counter == y.counter && x.sensor == y.sensor && x.arrival == y.arrival;
   });
@@ -37,7 +37,8 @@ bool are_equal(const CameraStream& a, const CameraStream& b) {
 class RigBags {
  public:
   explicit RigBags(Rig rig) : rig_(std::move(rig)) {
-    for (const CameraStream& camera : rig_) files_.push_back(write_sdk_bag(camera, folder_.path()));
+    for (const RecordedStream& camera : rig_)
+      files_.push_back(write_sdk_bag(camera, folder_.path()));
   }
 
   // Of a rig that has the same cameras.
@@ -74,7 +75,7 @@ void set_sensor(StampedFrame& frame, Nanoseconds sensor) {
 
 std::vector<StampedFrame>& frames(Rig& rig, std::size_t camera) {
   const std::string name = "camera" + std::to_string(camera);
-  return std::ranges::find(rig, name, &CameraStream::camera)->frames;
+  return std::ranges::find(rig, name, &RecordedStream::camera)->frames;
 }
 
 void lose_frames(Rig& rig) {
@@ -114,7 +115,7 @@ void swap_topics(Rig& rig) {
 }
 
 void step_clock(Rig& rig) {
-  for (CameraStream& camera : rig) {
+  for (RecordedStream& camera : rig) {
     for (std::size_t i = kFrames / 2; i < camera.frames.size(); ++i) {
       camera.frames[i].arrival += milliseconds(250);
     }

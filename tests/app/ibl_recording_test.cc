@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/replay/replay.h"
+#include "app/stream_run.h"
+#include "evaluation/frames/camera_statistics.h"
+#include "evaluation/frames/frame_account.h"
 #include "recording/rs_csv.h"
 #include "tests/data/ibl_recordings.h"
 #include "tests/read_fault.h"
@@ -153,11 +155,11 @@ TEST(IblRecording, EveryStampOfAGeneratedRecordingIsRead) {
     }
     const evaluation::CameraStatistics found = evaluation::camera_statistics(frames);
     EXPECT_EQ(found.long_intervals, 3);
-    EXPECT_EQ(found.missing_frames, counts ? 4 : 0);
+    EXPECT_EQ(evaluation::frame_account(frames, counts).lost, counts ? 4 : 0);
   }
 }
 
-std::vector<CameraStream> through_csv(const std::string& path) {
+std::vector<RecordedStream> through_csv(const std::string& path) {
   CsvRecordingReader reader;
   reader.read_text(rs_csv_text(read_ibl_recording(path)), "body.csv");
   return reader.take();
@@ -168,10 +170,10 @@ std::vector<CameraStream> through_csv(const std::string& path) {
 // sqrt(6001)).
 TEST(IblRecording, AGeneratedRecordingGivesWhatWasPutIn) {
   const ScratchFolder folder;
-  const evaluation::Replay replay =
-      evaluation::run_replay(through_csv(folder.write("a.ssv", ibl_timestamps())));
-  ASSERT_EQ(replay.cameras.size(), 1U);
-  const evaluation::CameraStatistics& found = replay.cameras[0].statistics;
+  const std::vector<RecordedStream> streams = through_csv(folder.write("a.ssv", ibl_timestamps()));
+  ASSERT_EQ(streams.size(), 1U);
+  const evaluation::CameraStatistics found =
+      evaluation::camera_statistics(evaluation::unwrapped(streams[0].frames));
   EXPECT_EQ(found.frames, 6001);
   EXPECT_EQ(found.long_intervals, 0);
   EXPECT_NEAR(found.span_s, 6 * 33.125 * (1 - 215e-6), 0.004);  // of arrivals
@@ -190,9 +192,10 @@ TEST(IblRecording, AGeneratedRecordingGivesWhatWasPutIn) {
 
 TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
   SIMBENCH_SKIP_WITHOUT(kRealBody);
-  const evaluation::Replay replay = evaluation::run_replay(through_csv(kRealBody));
-  ASSERT_EQ(replay.cameras.size(), 1U);
-  const evaluation::CameraStatistics& found = replay.cameras[0].statistics;
+  const std::vector<RecordedStream> streams = through_csv(kRealBody);
+  ASSERT_EQ(streams.size(), 1U);
+  const evaluation::CameraStatistics found =
+      evaluation::camera_statistics(evaluation::unwrapped(streams[0].frames));
   EXPECT_EQ(found.frames, 6001);
   EXPECT_EQ(found.long_intervals, 0);
   EXPECT_NEAR(found.span_s, 198.6, 0.05);
@@ -210,14 +213,11 @@ TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
   EXPECT_NEAR(found.excess.p95_ms, 0.600, 0.0005);
   EXPECT_NEAR(found.excess.p99_ms, 0.872, 0.0005);
   EXPECT_NEAR(found.excess.max_ms, 3.327, 0.0005);
-  bool regression = false;
-  for (const evaluation::DeviceTimeReplay& row : replay.cameras[0].rows) {
-    if (row.device_time != "regression_offline") continue;
-    regression = true;
-    EXPECT_NEAR(row.drift_ppm, -215.385, 0.005);
-    EXPECT_NEAR(row.residual.sd_ms, 0.1878, 0.0005);
-  }
-  EXPECT_TRUE(regression);
+  const auto stamped = stamped_streams(streams, {"regression_offline"}, "--stamps");
+  ASSERT_EQ(stamped.size(), 1U);
+  const evaluation::StampStatistics regression = evaluation::stamp_statistics(stamped[0]);
+  EXPECT_NEAR(regression.drift_ppm, -215.385, 0.005);
+  EXPECT_NEAR(regression.residual.sd_ms, 0.1878, 0.0005);
 }
 
 TEST(IblRecording, TheRealLeftCameraIsRead) {
@@ -227,7 +227,7 @@ TEST(IblRecording, TheRealLeftCameraIsRead) {
   EXPECT_EQ(frames.front().counter, 389918212U);
   EXPECT_EQ(frames.back().counter, 389918346U);
   const evaluation::CameraStatistics found = evaluation::camera_statistics(frames);
-  EXPECT_EQ(found.missing_frames, 0);
+  EXPECT_EQ(evaluation::frame_account(frames, /*counted=*/true).lost, 0);
   EXPECT_NEAR(found.sensor_period.mean_ms, 33.341, 0.0005);
   EXPECT_NEAR(found.sensor_period.sd_ms, 0.00229, 0.000005);
   EXPECT_NEAR(found.arrival_period.mean_ms, 33.3319, 0.00005);

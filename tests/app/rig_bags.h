@@ -1,7 +1,7 @@
 // Bags of a simulated rig, as the RealSense SDK's recorder would have written them: a file a
 // camera.
 //
-//   std::vector<CameraStream> rig = simulated_rig("6cam_2host_30fps", 1, 2400);
+//   std::vector<RecordedStream> rig = simulated_rig("6cam_2host_30fps", 1, 2400);
 //   const std::string file = write_sdk_bag(rig.front(), folder.path());
 #ifndef SIMBENCH_TESTS_APP_RIG_BAGS_H_
 #define SIMBENCH_TESTS_APP_RIG_BAGS_H_
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "evaluation/run/pipeline_choice.h"
-#include "recording/camera_streams.h"
+#include "recording/recorded_stream_sink.h"
 #include "recording/recorded_streams.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
@@ -21,20 +21,20 @@
 namespace simbench {
 
 // The depth streams of triggered cameras on one host.
-inline std::vector<CameraStream> simulated_rig(std::uint64_t seed, int cameras, int frames) {
+inline std::vector<RecordedStream> simulated_rig(std::uint64_t seed, int cameras, int frames) {
   const scenarios::Scenario scenario = scenarios::load_scenario(
       "6cam_2host_30fps", {{"/cameras/count", std::to_string(cameras)},
                            {"/cameras/cameras_per_host", std::to_string(cameras)},
                            {"/timeline/frames", std::to_string(frames)}});
   const auto choice = evaluation::choose_pipelines(scenario, {"genlock"}).front();
   const auto source = sim::make_simulation(scenario);
-  CameraStreamSink sink({});
+  RecordedStreamSink sink({});
   evaluation::record_run(*source, choice, seed, sink);
   return sink.take();
 }
 
 // One stream as a bag: images with the SDK's metadata.
-inline std::string sdk_bag(const CameraStream& stream, bags::RosbagWriter::Chunks chunks) {
+inline std::string sdk_bag(const RecordedStream& stream, bags::RosbagWriter::Chunks chunks) {
   // When the recording began, by the host's clock.
   constexpr Nanoseconds kStart = std::chrono::milliseconds(1'790'000'000'000);
   bags::RosbagWriter writer(chunks, std::size_t{768} << 10);
@@ -60,7 +60,7 @@ inline std::string sdk_bag(const CameraStream& stream, bags::RosbagWriter::Chunk
   return writer.bag();
 }
 
-inline std::string write_sdk_bag(const CameraStream& stream, const std::string& folder) {
+inline std::string write_sdk_bag(const RecordedStream& stream, const std::string& folder) {
   const std::string file = folder + "/" + stream.camera + ".bag";
   bags::write_bytes(file, sdk_bag(stream, bags::RosbagWriter::Chunks::kLz4));
   return file;

@@ -38,7 +38,7 @@ std::string image(int i, const std::string& frame, std::uint32_t sequence) {
 
 std::vector<std::string> names(const BagScan& scan) {
   std::vector<std::string> all;
-  for (const CameraStream& stream : scan.streams) {
+  for (const RecordedStream& stream : scan.streams) {
     all.push_back(stream.camera + ":" + stream.stream);
   }
   return all;
@@ -78,7 +78,7 @@ TEST(BagScanTest, HeaderStampsAreAComputersAndTheRawImageSpeaks) {
   }
   const BagScan scan = scanned(writer);
   EXPECT_THAT(names(scan), testing::ElementsAre("left:image", "right:image"));
-  const CameraStream& left = scan.streams[0];
+  const RecordedStream& left = scan.streams[0];
   EXPECT_TRUE(left.stamped_by_host);
   EXPECT_TRUE(left.counted);
   EXPECT_EQ(left.origin.topic, "/left/image_raw");
@@ -108,7 +108,7 @@ TEST(BagScanTest, MetadataHasTheCamerasStampsAndNamesTheImages) {
   }
   const BagScan scan = scanned(writer);
   ASSERT_THAT(names(scan), testing::ElementsAre("rig:depth"));
-  const CameraStream& depth = scan.streams[0];
+  const RecordedStream& depth = scan.streams[0];
   EXPECT_FALSE(depth.stamped_by_host);
   EXPECT_EQ(depth.origin.topic, "/camera/depth/image_rect_raw");
   ASSERT_EQ(depth.frames.size(), 10U);
@@ -166,7 +166,7 @@ TEST(BagScanTest, RosTwoHasNoCounterAndTheSameStamps) {
   for (const std::string name : {"rig.mcap", "rig_0.db3"}) {
     const BagScan scan = scan_bag(folder.file(name), "rig", {});
     ASSERT_EQ(scan.streams.size(), 1U) << name;
-    const CameraStream& left = scan.streams[0];
+    const RecordedStream& left = scan.streams[0];
     EXPECT_FALSE(left.counted);
     EXPECT_TRUE(left.stamped_by_host);
     ASSERT_EQ(left.frames.size(), 10U);
@@ -213,7 +213,7 @@ TEST(RecordedFilesTest, FilesOfOneNameAreToldApartAndBagsAndCsvMix) {
               "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\nDepth,0,1,10,11\n");
   const RecordedStreams read = read_recorded_files(files, {});
   std::vector<std::string> cameras;
-  for (const CameraStream& stream : read.streams) cameras.push_back(stream.camera);
+  for (const RecordedStream& stream : read.streams) cameras.push_back(stream.camera);
   EXPECT_THAT(cameras,
               testing::UnorderedElementsAre("a/left", "a/right", "b/left", "b/right", "c"));
 }

@@ -262,7 +262,7 @@ Injected injected(const std::string& path) {
   return found;
 }
 
-void expect_frames(const std::vector<StampedFrame>& expected, const CameraStream& stream) {
+void expect_frames(const std::vector<StampedFrame>& expected, const RecordedStream& stream) {
   ASSERT_EQ(stream.frames.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(stream.frames[i].counter, expected[i].counter) << i;

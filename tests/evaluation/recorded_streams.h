@@ -14,7 +14,7 @@ class RecordedStreams final : public TestSink {
  public:
   void on_start(const RigLayout& layout) override { layout_ = layout; }
 
-  std::vector<CameraStream> streams;
+  std::vector<RecordedStream> streams;
 
  private:
   void frame_came(const FrameRecord& frame, const FrameTruth* /*truth*/) override {
@@ -24,9 +24,9 @@ class RecordedStreams final : public TestSink {
                            .sensor = Microseconds(frame.frame.us),
                            .arrival = frame.arrival.time_since_epoch()});
   }
-  CameraStream& stream_of(std::uint32_t camera, const std::string& kind) {
+  RecordedStream& stream_of(std::uint32_t camera, const std::string& kind) {
     const std::string name = std::to_string(camera);
-    for (CameraStream& stream : streams) {
+    for (RecordedStream& stream : streams) {
       if (stream.camera == name && stream.stream == kind) return stream;
     }
     streams.push_back({name, "host" + std::to_string(layout_.cameras[camera].host), kind, {}});

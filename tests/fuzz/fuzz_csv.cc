@@ -1,10 +1,10 @@
-// The CSV reader and the replay of what it read: any bytes are either refused with a CsvError or
-// replayed without undefined behaviour.
+// The CSV reader and the scoring of what it read: any bytes are either refused with a CsvError or
+// scored without undefined behaviour.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-#include "evaluation/replay/replay.h"
+#include "app/recordings.h"
 #include "recording/rs_csv.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const simbench::CsvError&) {
     return 0;
   }
-  simbench::evaluation::run_replay(reader.take());
+  const simbench::app::RecordedRun run({"fuzz.csv"}, {.streams = reader.take(), .notes = {}}, {});
+  run.evaluate(run.chosen({}), false, nullptr);
   return 0;
 }

@@ -106,6 +106,7 @@ extern const std::optional<FrameTruth> truth;
 extern const RecordingEvent event;
 extern const std::string text;
 extern const DevicePoll poll;
+extern const RecordedStreams recorded;
 extern std::ostream& file;
 
 namespace app {

@@ -36,14 +36,28 @@ class RigsTest(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_replay_is_the_commands(self):
-        replay = quietly(simbench.replay, self.files)
-        expected = json.loads(command.simbench("replay", *self.files, "--format", "json"))
-        self.assertEqual(replay.data, expected)
-        self.assertEqual(len(replay.table), len(expected["rows"]))
+        pipelines = ["raw_arrival", "hull_300+genlock"]
+        result = quietly(simbench.replay, self.files, pipelines=pipelines)
+        expected = json.loads(
+            command.simbench(
+                "replay", *self.files, "--pipelines", ",".join(pipelines), "--format", "json"
+            )
+        )
+        self.assertEqual(
+            command.without_performance(result.data), command.without_performance(expected)
+        )
+        self.assertEqual(len(result.table), 2)
+        self.assertEqual(len(result.frames("raw_arrival")), 2000)
 
-    def test_frames_of_a_replay_have_the_files_stamps(self):
-        replay = quietly(simbench.replay, self.files)
-        frames = replay.frames(["raw_arrival"])
+    def test_inspection_is_the_commands(self):
+        found = quietly(simbench.inspect, self.files)
+        expected = json.loads(command.simbench("inspect", *self.files, "--format", "json"))
+        self.assertEqual(found.data, expected)
+        self.assertEqual(len(found.table), 2)
+
+    def test_frames_of_an_inspection_have_the_files_stamps(self):
+        found = quietly(simbench.inspect, self.files)
+        frames = found.frames(["raw_arrival"])
         self.assertEqual(len(frames), 2000)
         second = frames[frames["camera"] == 1]
         numpy.testing.assert_array_equal(second["counter"], numpy.arange(1, 1001))
@@ -51,7 +65,7 @@ class RigsTest(unittest.TestCase):
         numpy.testing.assert_allclose(second["global_ms_raw_arrival"], second["arrival_ns"] / 1e6)
         self.assertFalse(frames.flags.owndata)
         with self.assertRaisesRegex(simbench.InputError, "found 'none', allowed: "):
-            replay.frames(["none"])
+            found.frames(["none"])
 
     def test_diagnosis_is_the_commands(self):
         found = quietly(simbench.diagnose, self.files)

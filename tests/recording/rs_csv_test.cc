@@ -18,7 +18,8 @@ using testing::StartsWith;
 
 const std::string kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
 
-std::vector<CameraStream> read(const std::string& text, const std::string& path = "dir/front.csv") {
+std::vector<RecordedStream> read(const std::string& text,
+                                 const std::string& path = "dir/front.csv") {
   CsvRecordingReader reader;
   reader.read_text(text, path);
   return reader.take();
@@ -178,12 +179,12 @@ TEST(RsCsv, ALastLineWithoutItsEndIsLeftOutWithANote) {
 
 TEST(RsCsv, ColumnsOfAnyNameAndUnit) {
   CsvRecordingReader reader(
-      CsvColumns::parse("sensor=t cam:us,arrival=Host Time:s,counter=seq,camera=id"));
+      RecordingColumns::parse("sensor=t cam:us,arrival=Host Time:s,counter=seq,camera=id"));
   reader.read_text(
       "id;seq;note;T cam;host time\nfront;7;a,b;1000.5;1790000000.123456789\n"
       "back;8;;2000;1790000000.2\n",
       "log.csv");
-  const std::vector<CameraStream> streams = reader.take();
+  const std::vector<RecordedStream> streams = reader.take();
   ASSERT_EQ(streams.size(), 2U);
   EXPECT_EQ(streams[0].camera, "front");
   EXPECT_EQ(streams[0].stream, "frame");
@@ -194,9 +195,9 @@ TEST(RsCsv, ColumnsOfAnyNameAndUnit) {
 }
 
 TEST(RsCsv, WithoutACounterFramesCountAsTheyCome) {
-  CsvRecordingReader reader(CsvColumns::parse("sensor=s:ns,arrival=a:ns"));
+  CsvRecordingReader reader(RecordingColumns::parse("sensor=s:ns,arrival=a:ns"));
   reader.read_text("s\ta\n1\t10\n2\t20\n", "log.csv");
-  const std::vector<CameraStream> streams = reader.take();
+  const std::vector<RecordedStream> streams = reader.take();
   EXPECT_FALSE(streams[0].counted);
   EXPECT_EQ(streams[0].frames[1].counter, 1U);
   EXPECT_EQ(streams[0].frames[1].sensor, Nanoseconds(2));
@@ -205,7 +206,7 @@ TEST(RsCsv, WithoutACounterFramesCountAsTheyCome) {
 TEST(RsCsv, ColumnsThatAreNotThereAreNamed) {
   const auto message_of = [](const std::string& columns, const std::string& text) -> std::string {
     try {
-      CsvRecordingReader reader(CsvColumns::parse(columns));
+      CsvRecordingReader reader(RecordingColumns::parse(columns));
       reader.read_text(text, "log.csv");
     } catch (const CsvError& error) {
       return error.what();

@@ -27,7 +27,7 @@ scenarios::Scenario three_cameras(Overrides overrides = {}, std::int64_t frames 
   return scenarios::load_scenario("3cam_1host_30fps", overrides);
 }
 
-std::vector<CameraStream> recorded(const scenarios::Scenario& scenario, std::uint64_t seed) {
+std::vector<RecordedStream> recorded(const scenarios::Scenario& scenario, std::uint64_t seed) {
   RecordedStreams recording;
   sim::make_simulation(scenario)->record(
       {.seed = seed, .pipeline = scenario.pipelines.front().name}, recording);
@@ -75,8 +75,8 @@ TEST(DiagnoseSimulated, FramesThatTheCamerasLoseAreCounted) {
   const Diagnosis found = diagnosed(three_cameras({{"/cameras/drop_probability", "0.02"}}));
   EXPECT_EQ(found.verdict.status, SyncStatus::kWorks) << found.verdict.reason;
   for (const CameraDiagnosis& camera : nonempty(found.cameras)) {
-    EXPECT_NEAR(static_cast<double>(camera.facts.lost_frames), 0.02 * 1800, 25);
-    EXPECT_EQ(camera.facts.skipped_pulses, 0);
+    EXPECT_NEAR(static_cast<double>(camera.facts.account.lost), 0.02 * 1800, 25);
+    EXPECT_EQ(camera.facts.account.never_exposed, 0);
   }
 }
 
@@ -89,10 +89,10 @@ TEST(DiagnoseSimulated, ACameraThatVanishesEndsEarly) {
 }
 
 TEST(DiagnoseSimulated, AWrapChangesNothing) {
-  std::vector<CameraStream> streams = recorded(three_cameras(), 1);
+  std::vector<RecordedStream> streams = recorded(three_cameras(), 1);
   const Diagnosis before = diagnose(streams, {});
   constexpr Nanoseconds kRegister = Microseconds(std::int64_t{1} << 32);
-  for (CameraStream& stream : streams) {
+  for (RecordedStream& stream : streams) {
     const Nanoseconds first = stream.frames.front().sensor;
     for (StampedFrame& frame : stream.frames) {
       frame.sensor = (frame.sensor - first + kRegister - std::chrono::seconds(30)) % kRegister;

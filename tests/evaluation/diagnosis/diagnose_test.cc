@@ -44,10 +44,10 @@ struct Camera {
   std::uint32_t seed = 1;
 };
 
-CameraStream record(const Camera& camera) {
+RecordedStream record(const Camera& camera) {
   boost::random::mt19937 random(camera.seed + 7919 * static_cast<std::uint32_t>(camera.name[0]));
   boost::random::exponential_distribution<double> late(1);
-  CameraStream stream = {camera.name, camera.host, camera.stream, {}};
+  RecordedStream stream = {camera.name, camera.host, camera.stream, {}};
   for (std::int64_t i = 0; i < camera.frames; ++i) {
     const double at_ms = camera.phase_ms + static_cast<double>(i) * camera.period_ms;
     const double arrival_ms = at_ms + camera.delay_ms + camera.late_mean_ms * late(random);
@@ -59,7 +59,7 @@ CameraStream record(const Camera& camera) {
 }
 
 // Cameras "a", "b" and "c" on one trigger, their clocks tens of ppm apart.
-std::vector<CameraStream> rig(std::int64_t frames = 1800) {
+std::vector<RecordedStream> rig(std::int64_t frames = 1800) {
   return {record({.name = "a", .frames = frames}),
           record({.name = "b", .clock_ppm = 40, .delay_ms = 11, .frames = frames}),
           record({.name = "c", .clock_ppm = -75, .delay_ms = 6, .frames = frames})};
@@ -86,7 +86,7 @@ TEST(Diagnose, OneTriggerWorksWhateverTheCamerasClocksDo) {
 }
 
 TEST(Diagnose, AFreeRunningCameraIsNamedWithItsMovement) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams[1] = record({.name = "b", .period_ms = kPeriodMs * (1 + 50e-6)});
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kDoesNotWork);
@@ -107,7 +107,7 @@ TEST(Diagnose, TwoCamerasThatDisagreeBothRunFree) {
 }
 
 TEST(Diagnose, HalfTheRateIsStillTheTrigger) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams[2] = record({.name = "c", .period_ms = 2 * kPeriodMs, .clock_ppm = 20, .frames = 900});
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kWorks) << found.verdict.reason;
@@ -117,7 +117,7 @@ TEST(Diagnose, HalfTheRateIsStillTheTrigger) {
 }
 
 TEST(Diagnose, AllAtHalfTheRateShowsOnlyAgainstTheNominalOne) {
-  std::vector<CameraStream> streams;
+  std::vector<RecordedStream> streams;
   for (const char* name : {"a", "b"}) {
     streams.push_back(record({.name = name, .period_ms = 2 * kPeriodMs}));
   }
@@ -127,7 +127,7 @@ TEST(Diagnose, AllAtHalfTheRateShowsOnlyAgainstTheNominalOne) {
 }
 
 TEST(Diagnose, AnotherRateIsNoTrigger) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams[0] = record({.name = "a", .period_ms = 40, .frames = 1500});
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kDoesNotWork);
@@ -135,7 +135,7 @@ TEST(Diagnose, AnotherRateIsNoTrigger) {
 }
 
 TEST(Diagnose, TellsLostFramesFromSkippedTriggers) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   std::vector<StampedFrame>& lossy = streams[0].frames;
   for (const std::ptrdiff_t at : {900, 600, 300}) lossy.erase(lossy.begin() + at);
   std::vector<StampedFrame>& skipping = streams[1].frames;
@@ -143,15 +143,15 @@ TEST(Diagnose, TellsLostFramesFromSkippedTriggers) {
   for (std::size_t i = 0; i < skipping.size(); ++i) skipping[i].counter = i;
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kWorks) << found.verdict.reason;
-  EXPECT_EQ(found.cameras[0].facts.lost_frames, 3);
-  EXPECT_EQ(found.cameras[0].facts.skipped_pulses, 0);
-  EXPECT_EQ(found.cameras[1].facts.lost_frames, 0);
-  EXPECT_EQ(found.cameras[1].facts.skipped_pulses, 2);
+  EXPECT_EQ(found.cameras[0].facts.account.lost, 3);
+  EXPECT_EQ(found.cameras[0].facts.account.never_exposed, 0);
+  EXPECT_EQ(found.cameras[1].facts.account.lost, 0);
+  EXPECT_EQ(found.cameras[1].facts.account.never_exposed, 2);
   EXPECT_THAT(kinds(found), ElementsAre("a lost_frames", "b skipped_pulses"));
 }
 
 TEST(Diagnose, FindsAPeriodSlip) {
-  std::vector<CameraStream> streams = rig(3600);
+  std::vector<RecordedStream> streams = rig(3600);
   for (std::size_t i = 1000; i < 3600; ++i) streams[2].frames[i].sensor += from_ms(kPeriodMs);
   const Diagnosis found = diagnose(streams, {});
   ASSERT_EQ(found.cameras[2].facts.jumps.size(), 1U);
@@ -163,8 +163,8 @@ TEST(Diagnose, FindsAPeriodSlip) {
 }
 
 TEST(Diagnose, FindsAClockThatWasSet) {
-  std::vector<CameraStream> streams = rig(3600);
-  for (CameraStream& stream : streams) {
+  std::vector<RecordedStream> streams = rig(3600);
+  for (RecordedStream& stream : streams) {
     for (std::size_t i = 1000; i < 3600; ++i) stream.frames[i].arrival -= from_ms(250);
   }
   const Diagnosis found = diagnose(streams, {});
@@ -179,7 +179,7 @@ TEST(Diagnose, FindsAClockThatWasSet) {
 }
 
 TEST(Diagnose, FindsStampsInTheFuture) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   for (const std::size_t i : {700U, 900U, 901U}) streams[0].frames[i].sensor += from_ms(12);
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.cameras[0].facts.future_stamps, 3);
@@ -188,7 +188,7 @@ TEST(Diagnose, FindsStampsInTheFuture) {
 }
 
 TEST(Diagnose, AWrapOfTheRegisterIsNoFault) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   constexpr Nanoseconds kRegister = Microseconds(std::int64_t{1} << 32);
   for (StampedFrame& frame : streams[1].frames) {
     frame.sensor = (frame.sensor + kRegister - std::chrono::seconds(40)) % kRegister;
@@ -200,7 +200,7 @@ TEST(Diagnose, AWrapOfTheRegisterIsNoFault) {
 }
 
 TEST(Diagnose, FindsAnUnsteadyCamera) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   for (std::size_t i = 0; i < 1800; ++i) {
     streams[0].frames[i].sensor += from_ms(i % 2 == 0 ? 2 : -2);  // intervals of 29 and 37 ms
   }
@@ -211,7 +211,7 @@ TEST(Diagnose, FindsAnUnsteadyCamera) {
 }
 
 TEST(Diagnose, FindsWhatStallsStartsLateAndEndsEarly) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   auto& stalled = streams[0].frames;
   stalled.erase(stalled.begin() + 800, stalled.begin() + 890);  // three seconds
   auto& late = streams[1].frames;
@@ -223,7 +223,7 @@ TEST(Diagnose, FindsWhatStallsStartsLateAndEndsEarly) {
 }
 
 TEST(Diagnose, HostsWhoseClocksDifferCannotBeToldFromTriggers) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams.push_back(record({.name = "d", .host = "other", .host_ppm = 20}));
   streams.push_back(record({.name = "e", .host = "other", .host_ppm = 20}));
   const Diagnosis found = diagnose(streams, {});
@@ -235,7 +235,7 @@ TEST(Diagnose, HostsWhoseClocksDifferCannotBeToldFromTriggers) {
 }
 
 TEST(Diagnose, AHostIsReportedThoughItsFirstCameraHasTooFewFrames) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams.push_back(record({.name = "d", .host = "other", .host_ppm = 20, .frames = 1}));
   streams.push_back(record({.name = "e", .host = "other", .host_ppm = 20}));
   streams.push_back(record({.name = "f", .host = "other", .host_ppm = 20}));
@@ -245,7 +245,7 @@ TEST(Diagnose, AHostIsReportedThoughItsFirstCameraHasTooFewFrames) {
 }
 
 TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsFound) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams.push_back(record({.name = "d", .host = "other", .host_ppm = 20}));
   streams.push_back(
       record({.name = "e", .host = "other", .period_ms = kPeriodMs * 1.00004, .host_ppm = 20}));
@@ -254,13 +254,13 @@ TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsFound) {
 }
 
 TEST(Diagnose, SynchronisedHostsOfOneCameraEachAreRecognised) {
-  std::vector<CameraStream> streams = rig();
-  for (CameraStream& stream : streams) stream.host = stream.camera;
+  std::vector<RecordedStream> streams = rig();
+  for (RecordedStream& stream : streams) stream.host = stream.camera;
   EXPECT_EQ(diagnose(streams, {}).verdict.status, SyncStatus::kWorks);
 }
 
 TEST(Diagnose, DepthAndColourOfOneCamera) {
-  std::vector<CameraStream> streams;
+  std::vector<RecordedStream> streams;
   for (const char* name : {"a", "b"}) {
     streams.push_back(record({.name = name, .stream = "Color 0", .phase_ms = 3}));
     streams.push_back(record({.name = name}));
@@ -281,8 +281,8 @@ TEST(Diagnose, DepthAndColourOfOneCamera) {
 }
 
 TEST(Diagnose, AShortRecordingSaysHowLongItShouldBe) {
-  std::vector<CameraStream> streams = rig();
-  for (CameraStream& stream : streams) stream.frames.resize(150);
+  std::vector<RecordedStream> streams = rig();
+  for (RecordedStream& stream : streams) stream.frames.resize(150);
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kCannotBeTold);
   EXPECT_THAT(found.verdict.reason, HasSubstr("record about"));
@@ -295,7 +295,7 @@ TEST(Diagnose, OneCameraAloneCannotShowATrigger) {
 }
 
 TEST(Diagnose, DoubtfulStampsAreSaid) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   EXPECT_THAT(kinds(diagnose(streams, {})), Not(Contains(HasSubstr("global_time"))));
   for (StampedFrame& frame : streams[0].frames) frame.sensor += std::chrono::seconds(1'700'000'000);
   for (StampedFrame& frame : streams[1].frames) frame.sensor /= 1000;  // seconds, not milliseconds
@@ -306,11 +306,11 @@ TEST(Diagnose, DoubtfulStampsAreSaid) {
   EXPECT_THAT(kinds(found), Contains("a global_time"));
   EXPECT_THAT(kinds(found), Contains("b doubtful_rate"));
   EXPECT_THAT(kinds(found), Contains("c counter_jumps"));
-  EXPECT_EQ(found.cameras[2].facts.lost_frames, 0);
+  EXPECT_EQ(found.cameras[2].facts.account.lost, 0);
 }
 
 TEST(Diagnose, TooFewOrDamagedFramesAreSaid) {
-  std::vector<CameraStream> streams = rig();
+  std::vector<RecordedStream> streams = rig();
   streams[0].frames.resize(1);
   for (StampedFrame& frame : streams[1].frames) frame.sensor = from_ms(7);
   std::vector<StampedFrame>& damaged = streams[2].frames;
@@ -329,7 +329,7 @@ TEST(Diagnose, TooFewOrDamagedFramesAreSaid) {
 TEST(Diagnose, RandomStampsGiveAVerdictAndNoCrash) {
   for (std::uint32_t seed = 1; seed <= 50; ++seed) {
     boost::random::mt19937_64 random(seed);
-    std::vector<CameraStream> streams(1 + seed % 3);
+    std::vector<RecordedStream> streams(1 + seed % 3);
     for (std::size_t i = 0; i < streams.size(); ++i) {
       streams[i] = {std::string(1, static_cast<char>('a' + i)), "pc", "Depth 0", {}};
       for (std::uint32_t frame = 0; frame < 1 + seed * 7; ++frame) {
@@ -349,7 +349,7 @@ TEST(Diagnose, RarelyErrs) {
   int false_alarms = 0;
   int missed = 0;
   for (std::uint32_t seed = 1; seed <= 100; ++seed) {
-    std::vector<CameraStream> streams;
+    std::vector<RecordedStream> streams;
     for (const char* name : {"a", "b", "c", "d"}) {
       streams.push_back(record({.name = name, .seed = seed * 31}));
     }

@@ -35,7 +35,7 @@ TEST(FitStream, WithoutDelaysIsTheRateAndNoExcess) {
   EXPECT_NEAR(fit.skew_ppm, 40, 0.06);
   EXPECT_LT(*std::max_element(fit.excess_ms.begin(), fit.excess_ms.end()), 0.002);
   EXPECT_EQ(fit.frames, 600);
-  EXPECT_EQ(fit.missing, 0);
+  EXPECT_EQ(fit.account.lost, 0);
   EXPECT_EQ(fit.pairs, 599);
 }
 
@@ -71,9 +71,10 @@ TEST(FitStream, CountsGapsAndPairs) {
   FitStream stream = stream_of(400, 0, [](int i) { return 0.1 * (i % 3); });
   for (std::size_t i = 200; i < 400; ++i) stream.frames[i].counter += 7;
   stream.frames.erase(stream.frames.begin() + 100);
+  stream.account = frame_account(stream.frames, /*counted=*/true);
   const StreamFit fit = fit_stream("a", stream);
   EXPECT_EQ(fit.frames, 399);
-  EXPECT_EQ(fit.missing, 8);
+  EXPECT_EQ(fit.account.lost, 8);
   EXPECT_EQ(fit.pairs, 396);
 }
 

@@ -1,0 +1,63 @@
+// What became of the frames of a stream: delivered, lost, never exposed, unknown.
+//
+// A camera counts the frames that it exposes, so a gap of its counter is frames that were lost
+// after the camera had counted them. A period of its clock in which the counter stands still was
+// never exposed. Where the counter starts again or jumps further than the time allows, nothing
+// tells what became of the periods between two frames: they are unknown, as are all
+// missing periods of a stream without a counter.
+//
+// The account covers the whole stream, from its first frame to its last. What the camera exposed
+// before or after that leaves no trace.
+//
+//   const FrameAccount account = frame_account(recorded.streams[0]);
+//   print(account.delivered, account.lost);
+//
+// Complexity: O(n). Source: docs/reference/d455.md section 1.
+#ifndef SIMBENCH_EVALUATION_FRAMES_FRAME_ACCOUNT_H_
+#define SIMBENCH_EVALUATION_FRAMES_FRAME_ACCOUNT_H_
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "recording/recorded_streams.h"
+
+namespace simbench::evaluation {
+
+struct FrameAccount {
+  std::int64_t delivered = 0;
+  std::int64_t lost = 0;           // counted by the camera, but never arrived
+  std::int64_t never_exposed = 0;  // periods that the counter did not count
+  std::int64_t unknown = 0;        // missing periods of which the counter tells nothing
+  // Why periods are unknown.
+  std::int64_t counter_restarts = 0;  // the counter stood still or went back
+  std::int64_t counter_jumps = 0;     // it went up by more frames than fit into the time
+  std::uint64_t largest_jump = 0;     // of the counter
+};
+
+// What lies between two successive frames of a stream.
+struct FrameGap {
+  std::int64_t lost = 0;
+  std::int64_t never_exposed = 0;
+  std::int64_t unknown = 0;
+  bool counter_restarts = false;
+  std::uint64_t counter_jump = 0;  // 0: none
+};
+
+// Frames in order of delivery, with stamps that are unwrapped (camera_statistics.h). `counted`:
+// RecordedStream::counted.
+FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted);
+// The same of a stream as recorded.
+FrameAccount frame_account(const RecordedStream& stream);
+
+// Gap i lies between frame i and frame i + 1.
+std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool counted);
+
+// The frame period by the camera's clock, in ms; nothing if the stamps do not advance. The median
+// over spans of some frames, since alternating intervals have no middle one.
+std::optional<double> stream_period_ms(std::span<const StampedFrame> frames);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_FRAMES_FRAME_ACCOUNT_H_

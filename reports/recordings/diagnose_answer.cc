@@ -1,0 +1,143 @@
+#include "reports/recordings/diagnose_answer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/counted.h"
+#include "reports/recordings/diagnose_report.h"
+#include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::CameraDiagnosis;
+using evaluation::Diagnosis;
+using evaluation::Follows;
+using evaluation::GroupVerdict;
+using evaluation::SyncStatus;
+
+std::string verdict_sentence(const GroupVerdict& verdict) {
+  return fmt::format("{}: hardware sync {}{}{}.", verdict.stream, sync_status_text(verdict.status),
+                     verdict.status == SyncStatus::kWorks ? ": " : ", because ", verdict.reason);
+}
+
+std::string other_streams(const Diagnosis& diagnosis) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 1; i < diagnosis.groups.size(); ++i) {
+    sentences.push_back(verdict_sentence(diagnosis.groups[i]));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+bool drifts(const CameraDiagnosis& camera) {
+  return camera.standing.follows == Follows::kOwnClock ||
+         camera.standing.follows == Follows::kHostOrOwn;
+}
+
+// The camera of the first stream that moves most, and how soon it is a frame off.
+std::string drift_sentence(const Diagnosis& diagnosis) {
+  const CameraDiagnosis* fastest = nullptr;
+  const auto speed = [](const CameraDiagnosis& camera) {
+    return std::abs(camera.standing.moves_ms_per_minute);
+  };
+  for (const CameraDiagnosis& camera : diagnosis.cameras) {
+    if (camera.stream != diagnosis.verdict.stream || !drifts(camera) || !(speed(camera) > 0)) {
+      continue;
+    }
+    if (fastest == nullptr || speed(camera) > speed(*fastest)) fastest = &camera;
+  }
+  if (fastest == nullptr) return "";
+  return fmt::format(
+      "{} drifts most: {} a minute against the common period, a whole frame within {} "
+      "minutes.",
+      capitalised(evaluation::called_camera(fastest->camera)),
+      time_text(fastest->standing.moves_ms_per_minute),
+      number_text(diagnosis.verdict.period_ms / speed(*fastest)));
+}
+
+bool slips(const CameraDiagnosis& camera) {
+  return std::ranges::any_of(camera.facts.jumps,
+                             [](const auto& jump) { return jump.periods != 0; });
+}
+
+// A count over all cameras, and the camera with the most of it.
+struct Counted {
+  std::int64_t all = 0;
+  std::string most_of{};  // "camera front"
+
+  Counted(const Diagnosis& diagnosis, std::int64_t evaluation::FrameAccount::*count) {
+    std::int64_t most = 0;
+    for (const CameraDiagnosis& camera : diagnosis.cameras) {
+      const std::int64_t found = camera.facts.account.*count;
+      all += found;
+      if (found > most) most_of = evaluation::called_camera(camera.camera);
+      most = std::max(most, found);
+    }
+  }
+  std::string text(std::string_view thing) const {
+    return all == 1 ? fmt::format("1 {} is", thing)
+                    : fmt::format("{} {}s are", count_text(all), thing);
+  }
+};
+
+// Whose stamps slipped, who lost frames, and where periods have none.
+std::string slips_sentence(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const CameraDiagnosis& camera : diagnosis.cameras) {
+    if (slips(camera)) names.push_back(fmt::format("{} ({})", camera.camera, camera.stream));
+  }
+  std::string text =
+      names.empty() ? std::string("No camera's stamps slip by whole frames")
+                    : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "));
+  const Counted lost(diagnosis, &evaluation::FrameAccount::lost);
+  const Counted unknown(diagnosis, &evaluation::FrameAccount::unknown);
+  if (lost.all > 0) text += fmt::format("; {} lost, most by {}", lost.text("frame"), lost.most_of);
+  if (unknown.all > 0) {
+    text += fmt::format("; {} without a frame, most of {}: lost or never exposed",
+                        unknown.text("period"), unknown.most_of);
+  }
+  return text + (lost.all + unknown.all == 0 ? "; no frame is lost." : ".");
+}
+
+std::string resolution_sentence(const GroupVerdict& verdict) {
+  if (std::isnan(verdict.resolution_ppm)) return "";
+  constexpr double kMsPerMinutePerPpm = 0.06;
+  return fmt::format(
+      "These stamps show frame periods to {} ppm: cameras that drift apart by less than {} a "
+      "minute look synchronised.",
+      number_text(verdict.resolution_ppm), time_text(verdict.resolution_ppm * kMsPerMinutePerPpm));
+}
+
+// What each unknown is about, without its explanation.
+std::string unknown_sentence(const std::vector<std::string>& unknowns) {
+  std::vector<std::string> subjects;
+  subjects.reserve(unknowns.size());
+  for (const std::string& unknown : unknowns) {
+    subjects.push_back(unknown.substr(0, unknown.find(':')));
+  }
+  if (subjects.empty()) return "";
+  return fmt::format("Stamps alone cannot show {}.", fmt::join(subjects, ", nor "));
+}
+
+}  // namespace
+
+AnswerText diagnose_answer(const Diagnosis& diagnosis) {
+  if (diagnosis.groups.empty()) return {.lead = "There is no camera."};
+  AnswerText answer{.lead = verdict_sentence(diagnosis.verdict)};
+  answer.add("Streams", other_streams(diagnosis));
+  answer.add("Drift", drift_sentence(diagnosis));
+  answer.add("Slips", slips_sentence(diagnosis));
+  answer.add("Can tell", resolution_sentence(diagnosis.verdict));
+  answer.add("Cannot tell", unknown_sentence(diagnosis.cannot_know));
+  return answer;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,17 @@
+// The answer of `simbench diagnose`: whether the hardware sync works, which camera drifts most and
+// which slips, how small a drift these stamps can show, and what no stamp shows.
+//
+//   document.head = paragraphs(diagnose_answer(diagnosis));
+#ifndef SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_ANSWER_H_
+#define SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_ANSWER_H_
+
+#include "evaluation/diagnosis/diagnose.h"
+#include "reports/text/answer_text.h"
+
+namespace simbench::reports {
+
+AnswerText diagnose_answer(const evaluation::Diagnosis& diagnosis);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_ANSWER_H_
