@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "algorithms/ports/assert.h"
+#include "laws/generators.h"
 #include "laws/normal_law.h"
 #include "sim/engine/normal_process.h"
 #include "sim/engine/random.h"

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "laws/normal_law.h"
 #include "sim/engine/normal_process.h"
 #include "sim/engine/random.h"
 
