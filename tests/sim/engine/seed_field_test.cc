@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/engine/normal_process.h"
+#include "laws/normal_law.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
