@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "laws/normal_law.h"
-#include "sim/engine/normal_process.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
