@@ -41,8 +41,8 @@ class ParameterBinder {
   // Reads: each member gets its parameter's value. `values` must outlive this.
   explicit ParameterBinder(const Parameters& values) : values_(&values) {}
 
-  // A number from `low` to `high`, both included; whole-number members drop the fraction. Of a span
-  // of time, the name's end tells the unit: _us, _ms, _s or _hours.
+  // A number from `low` to `high`, both included; whole-number members drop the fraction. The name
+  // of a span of time ends with its unit: _us, _ms, _s or _hours.
   template <class Number>
   ParameterBinder& number(const std::string& name, Number& member, double low, double high,
                           const std::string& meaning, const std::string& source) {

@@ -115,7 +115,7 @@ const std::vector<Entry>& algorithms();
 template <class Entry>
 const Entry* find_algorithm(const std::string& name);
 
-// Of any stage, in the same order; null likewise.
+// The same for any stage: all in the same order, and one by name, null if there is none.
 std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage);
 const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name);
 

@@ -55,7 +55,7 @@ class RecordedRun {
   // Throws RecordingFolderError or scenarios::InputError where there is nothing to evaluate: no
   // capture, no scenario.
   explicit RecordedRun(const std::string& folder);
-  // Of files, whose streams these are. Throws scenarios::InputError.
+  // Evaluates files, whose streams these are. Throws scenarios::InputError.
   RecordedRun(std::vector<std::string> files, RecordedStreams recorded,
               const StreamScoring& scoring);
   RecordedRun(RecordedRun&&) = default;

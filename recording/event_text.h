@@ -4,7 +4,7 @@
 // first, then the members in the order of their structs. Stamps are integer nanoseconds of their
 // own base (device stamps: microseconds), absent ones empty, doubles in the shortest form that
 // reads back as the same number; texts have backslash, comma and line ends escaped by a backslash.
-// So from_line(to_line(e)) is e, bit for bit.
+// from_line(to_line(e)) is therefore e, bit for bit.
 //
 //   frame,camera,stream,domain,counter,exposure_us,sensor_us,frame_us,backend_ns,arrival_ns,
 //     arrival_steady_ns[,pulse,exposure_start_ns,exposure_end_ns,reference_ns,own_host_ns,

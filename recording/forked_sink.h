@@ -25,7 +25,7 @@ class ForkedSink final : public RecordingSink {
     for (RecordingSink* const sink : sinks) branches_.push_back({sink, nullptr});
   }
 
-  // Of the sink at that place; null if it has not failed.
+  // What the sink at that place threw; null if it has not failed.
   std::exception_ptr failure(std::size_t sink) const { return branches_[sink].failure; }
 
   void on_start(const RigLayout& layout) override {

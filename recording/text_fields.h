@@ -79,7 +79,7 @@ bool read_whole(std::string_view text, Number& value) {
 
 // Reads back exactly what was written: a whole number has no plus sign, no needless zero and no
 // "-0"; a double is finite and in the shortest form; a text has backslash, comma and line ends as
-// \\ \, \n \r. So a line that is read without an error is the one written for the same values.
+// \\ \, \n \r. A line that is read without an error is thus the one written for the same values.
 //
 // Errors: TextFieldError, "column 5 (counter): found '1x', allowed: ...". Any bytes are safe.
 class FieldReader {

@@ -12,7 +12,7 @@
 
 namespace simbench::scenarios {
 
-// Of a scenario that has /cameras/frame_control.
+// The scenario must have /cameras/frame_control.
 FrameControlLimits frame_limits(const Scenario& scenario);
 
 }  // namespace simbench::scenarios

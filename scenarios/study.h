@@ -38,7 +38,7 @@ struct Study {
   std::vector<std::string> pipelines;
   std::uint64_t seeds = 0;
   std::vector<StudyTable> tables;
-  // Of the hosts' clocks alone (simbench sweep --clocks).
+  // The study is about the hosts' clocks alone (simbench sweep --clocks).
   bool clocks = false;
   std::optional<std::uint64_t> duration_s{};
   std::optional<std::uint64_t> from_s{};

@@ -10,8 +10,8 @@
 //                                                the host's steady clock
 //
 // and the steady time becomes system time by the frame's own arrival, which was read on both
-// clocks. So a step or a slew of the system clock does not spoil the fit, and the next frame's
-// stamp is by the clock as it was set.
+// clocks. A step or a slew of the system clock therefore does not spoil the fit, and the next
+// frame's stamp is by the clock as it was set.
 //
 // A stamp by readings is off by half of what a request takes longer than its reply, one by arrivals
 // is late by the least time from the middle of an exposure to its arrival. That is a constant of

@@ -53,7 +53,7 @@ class PhaseLine {
   // The same, and nothing is known of the rate.
   void forget();
 
-  // Of the present line.
+  // How many frames the present line has.
   std::size_t frames() const { return frames_; }
   // When that frame is due.
   HostTime due(std::uint32_t counter) const;

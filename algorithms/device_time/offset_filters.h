@@ -74,7 +74,7 @@ std::unique_ptr<DeviceTimeEstimator> make_theil_sen(TheilSenWindow window);
 // A frame whose residual exceeds `gate` standard deviations of the innovation is rejected. After a
 // bad start such a gate rejects for ever: with a first frame 24 ms late all others are rejected,
 // and as Q adds nothing to the offset the filter cannot recover (measured: 124 to 480 ms off for
-// good). So after `rejections_to_restart` in a row it begins anew from the present frame.
+// good). After `rejections_to_restart` in a row it therefore begins anew from the present frame.
 //
 // Delay is one-sided, so its mean within the gate stays in the stamps as a bias (0.28 ms for
 // Exp(0.3 ms)). The defaults are the reference page's "tuned" row, not cuckoo's, whose cooldown and

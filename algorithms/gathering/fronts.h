@@ -168,7 +168,7 @@ class FrontMatcher {
 
 // The earliest and the latest of n fronts, while single ones change.
 //
-// A tournament tree over one integer key per source. Of equal keys the lowest source is the
+// A tournament tree over one integer key per source. If keys are equal, the lowest source is the
 // earliest and the highest source the latest.
 //
 // Complexity: O(log n) per changed key at most (mostly less: the walk ends where nothing changes);

@@ -11,8 +11,8 @@
 // Steering. steer() makes the clock follow a ClockLine: it steps if the clock is further off than
 // step_threshold (the step allows for the delay of the last set call; the rest is slewed the next
 // time), else sets the rate to the line's and slews the rest within `settle`, at most at
-// max_slew_ppm. So offset and rate are both right, without a loop gain. Less than kIgnored is left
-// alone: each adjustment is a call that costs time.
+// max_slew_ppm. Offset and rate are thus both right, without a loop gain. Less than kIgnored is
+// left alone: each adjustment is a call that costs time.
 //
 // Only one coroutine at a time may steer; others may observe meanwhile.
 // Complexity: O(1). Source: docs/design.md section 4; docs/reference/calibration.md section 2

@@ -105,7 +105,7 @@ class FrameControl {
 // Why the camera refuses a frame of that length, empty if it does not: one home for all that
 // implement or ask.
 std::string refusal_of(const FrameControlLimits& limits, FrameControlKind kind, Nanoseconds length);
-// Likewise of a start at that time, `now` by the same clock.
+// Why the camera refuses a start at that time, empty if it does not; `now` is by the same clock.
 std::string refusal_of_start(const FrameControlLimits& limits, HostTime at, HostTime now);
 
 }  // namespace simbench

@@ -65,7 +65,7 @@ class SteadyClock {
 enum class Transport : std::uint8_t {
   kStream,    // in order, complete, with Nagle and delayed ACK where the host has them
   kDatagram,  // may be lost, duplicated, reordered
-  // Likewise, of the stage capture_alignment: a channel of its own between the same hosts.
+  // Datagrams of the stage capture_alignment: a channel of its own between the same hosts.
   kAlignment,
 };
 

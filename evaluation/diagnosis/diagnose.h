@@ -78,7 +78,7 @@ struct StreamFacts {
   double future_ms = 0;            // by how much, at most
   std::int64_t wraps = 0;          // of the 32-bit microsecond register
   bool global_time = false;        // stamps count from 1970: they are no camera's
-  // Of the recording: RecordedStream has what they mean.
+  // The recording says these two: RecordedStream has what they mean.
   bool counted = true;
   bool stamped_by_host = false;
   double least_delay_ms = kNan;  // of arrivals after stamps, if a host made those; 1 % are below

@@ -55,7 +55,7 @@ struct StampedStream {
   std::vector<std::optional<GlobalTime>> stamps;  // by frame
 };
 
-// Of the frames that have a stamp.
+// Takes the frames that have a stamp.
 StampStatistics stamp_statistics(const StampedStream& stamped);
 
 }  // namespace simbench::evaluation

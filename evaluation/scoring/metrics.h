@@ -69,7 +69,7 @@ struct MetricValues {
   Value dynamic_te_ms = no_value<Value>();   // largest range (peak to peak) of any host's TE
   // Messages that all hosts sent, the lost ones too, over the time of the whole run.
   Value packets_per_s = no_value<Value>();
-  // Of captures only whose exposures are steered (alignment_scores.h).
+  // Only captures whose exposures are steered have these (alignment_scores.h).
   Value exposure_spread_median_ms = no_value<Value>();
   Value exposure_spread_p95_ms = no_value<Value>();
   Value aligned_1_ms_s = no_value<Value>();  // after this time the spread stays below 1 ms
@@ -78,7 +78,7 @@ struct MetricValues {
   Value disturbed_frames = no_value<Value>();    // a camera
   Value exposure_drift_ppm = no_value<Value>();  // of the worst camera
   Value wrong_locks = no_value<Value>();         // cameras
-  // Of clock runs only (evaluation/clock_run/clock_score.h).
+  // Only clock runs have these (evaluation/clock_run/clock_score.h).
   Value clock_spread_ms = no_value<Value>();  // mean in time: largest minus smallest clock
   Value clock_spread_median_ms = no_value<Value>();
   Value clock_spread_p95_ms = no_value<Value>();

@@ -36,7 +36,7 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
 
 // Returns over how many seeds the row's median of a metric is: those that have a value.
 std::size_t scored_seeds(const Row& row, const Metric& metric);
-// Of AMD; where no seed has one, of the metric with the most.
+// The same for AMD; where no seed has one, for the metric with the most.
 std::size_t scored_seeds(const Row& row);
 
 // Whether the row has pulses but no AMD: those of a single camera.

@@ -1,7 +1,7 @@
 // Observes the stamps and sets of a PipelineScorer while it scores, for figures and timelines.
 //
 // A score is the same with and without an observer. The cost without one is a test of a pointer per
-// block and set. Of frames that come in a block, all stamps are told before the sets.
+// block and set. All stamps of a block of frames are told before its sets.
 //
 //   scorer.watch(observer);
 //   source.record(request, scorer);

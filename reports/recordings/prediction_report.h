@@ -28,7 +28,7 @@ struct Prediction {
   evaluation::Series measured;
   evaluation::Series simulated;
   std::size_t measured_count = 0;  // of values that exist
-  // Of the measured median among the simulated seeds; nothing if one does not exist.
+  // Where the measured median lies among the simulated seeds; nothing if one does not exist.
   std::optional<evaluation::Percentile> percentile;
 };
 

@@ -27,7 +27,7 @@ struct StackLaw {
   double spike_max_us = 0;
   double mean_us = 0;     // of all delays
   double longest_us = 0;  // of all delays
-  // Of each delay's rank with the next message's (Spearman): 0 for independent delays.
+  // Spearman's correlation of a delay with the next message's: 0 for independent delays.
   double correlation_with_next = 0;
 };
 

@@ -30,7 +30,7 @@ inline evaluation::SeedScore seed_score(std::uint64_t seed) {
   return score;
 }
 
-// Of a capture whose exposures nobody steers.
+// Makes it the row of a capture whose exposures nobody steers.
 inline void set_unsteered(evaluation::Row& row) {
   row.exposure_spread_median_ms = row.exposure_spread_p95_ms = no_series();
   row.aligned_1_ms_s = row.aligned_0_1_ms_s = row.aligned_0_01_ms_s = no_series();

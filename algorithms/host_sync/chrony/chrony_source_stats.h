@@ -146,7 +146,7 @@ class ChronySourceStats {
   double asymmetry() const { return asymmetry_; }
 
  private:
-  // Of the samples as columns, as far as a fit needs them; allocated once.
+  // The samples in columns, as far as a fit needs them; allocated once.
   struct Columns {
     std::vector<double> time_s;   // since the last sample
     std::vector<double> delay_s;  // above the least

@@ -1,7 +1,7 @@
 // One host's end of the probes between two hosts (huygens.h, steps 2 and 3).
 //
-// Of the two, a is the host of the lower number: b sends it the hull of the probes from a to b, and
-// a finds the line.
+// Host a is the one of the lower number. Host b sends it the hull of the probes from a to b, and a
+// finds the line.
 //
 //   ProbeLink link(host, master, HuygensSettings{}, raw);
 //   co_await link.probe();

@@ -39,9 +39,9 @@ struct NtpSample {
 //  - A sample is used once, and never one older than the last used.
 //  - Popcorn spikes: a best sample is not used if its offset differs from that of the best before
 //    (used or not) by more than 3 times the jitter, which is taken to the new one, within two poll
-//    intervals of the last used. So the gate closes only where the best before has just left the
-//    stages, and a lone outlier of low delay passes, as in the reference implementation. It needs
-//    dispersions below kMaxDistance (four samples).
+//    intervals of the last used. The gate therefore closes only where the best before has just left
+//    the stages, and a lone outlier of low delay passes, as in the reference implementation. The
+//    gate needs dispersions below kMaxDistance (four samples).
 //
 // Complexity: O(1). Degenerate: delays below the precision count as the precision, a dispersion of
 // 16 s or more as no sample.
@@ -164,7 +164,7 @@ class NtpDiscipline {
   double frequency() const { return frequency_; }  // correction, as a fraction
   int poll() const { return poll_; }
   double jitter_s() const { return jitter_s_; }
-  // Of the loop, once the clamp is over.
+  // The loop has both of these once the clamp is over.
   double time_constant_s() const;
   double poll_interval_s() const;
 

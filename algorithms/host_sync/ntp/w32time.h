@@ -14,7 +14,7 @@
 //   adjustment = |offset| / (16 * PhaseCorrectRate * poll interval in seconds)
 //
 // in units of 100 ns per clock tick (ClockRate 156250 units, 15.625 ms), slew by that adjustment
-// if |offset| < MaxAllowedPhaseOffset and adjustment <= ClockRate / 2; else set. So a slew always
+// if |offset| < MaxAllowedPhaseOffset and adjustment <= ClockRate / 2; else set. A slew always
 // takes 16 * PhaseCorrectRate * poll ticks. Example: 0.54 s at a poll of 1024 s and
 // PhaseCorrectRate 7 gives 47 units a tick, 301 ppm, for 1792 s. (Until Windows Server 2012 R2 the
 // divisor was PhaseCorrectRate * UpdateInterval.)

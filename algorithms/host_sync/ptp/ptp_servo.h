@@ -63,11 +63,12 @@ class Servo {
   virtual ~Servo() = default;
   // `local_ns`: the own clock at the offset. The answer to a clock that jumps back is kUnlocked.
   virtual ServoAnswer sample(double offset_ns, std::int64_t local_ns, double weight) = 0;
-  // Of the reference against the own clock as the servo has left it.
+  // The reference's rate against the own clock as the servo has left it.
   virtual double rate_ratio() const { return 1; }
 };
 
-// Of the constants of a PI servo: kp = min(kp T^kp_exponent, kp_limit / T), ki likewise.
+// A PI servo scales its constants with the interval T: kp = min(kp T^kp_exponent, kp_limit / T), ki
+// likewise.
 struct PiScales {
   double kp = 0;
   double ki = 0;

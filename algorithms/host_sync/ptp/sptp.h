@@ -38,7 +38,7 @@ struct SptpSettings {
   Nanoseconds interval = from_ms(1000);
   Nanoseconds exchange_timeout = from_ms(100);  // at most half of the interval
   SptpPathDelay::Settings path_delay{};
-  // Of the client's servo and of phc2sys; the interval is theirs.
+  // The client's servo and phc2sys have these limits, each with an interval of its own.
   ServoSettings servo_limits{.max_frequency_ppb = 500e3};
   Nanoseconds patience = from_ms(30e3);
 

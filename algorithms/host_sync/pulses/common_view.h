@@ -9,9 +9,9 @@
 //   c = (master's clock, by the two-way hull, at the own sighting) - (the master's sighting)
 //
 // is the error of the two-way hull: half the asymmetry of the link, a constant that is subtracted
-// from the hull's line. So the rate, and everything before the first pulse, comes from the network
-// (two_way_estimators.h), which also identifies the pulses (wrongly if its error ever exceeds half
-// a period), and the pulses correct its offset, during the capture too.
+// from the hull's line. The rate, and everything before the first pulse, thus comes from the
+// network (two_way_estimators.h), which also identifies the pulses (wrongly if its error ever
+// exceeds half a period). The pulses correct its offset, during the capture too.
 //
 // c has a standard deviation s (pulse_observer.h, of both hosts). Before there are many pulses it
 // is worse than the network, so only what c says of the error is subtracted. The prior is causality

@@ -1,10 +1,10 @@
 // GNSS-disciplined hosts: each has a receiver whose PPS interrupts it and whose message has the
 // time of the pulse. All hosts, the master too, follow GNSS time; no message passes between them.
 //
-// Interrupts are late, never early. So the lower envelope of (GNSS time, steady clock minus GNSS
-// time) of the last pulses has, at the middle of the window, a touching line that gives offset and
-// rate; the system clock is steered along it (clock_steering.h). The interrupt's least delay is in
-// every host's clock alike, and so in no difference between them.
+// Interrupts are late, never early. The lower envelope of (GNSS time, steady clock minus GNSS time)
+// of the last pulses therefore has, at the middle of the window, a touching line that gives offset
+// and rate; the system clock is steered along it (clock_steering.h). The interrupt's least delay is
+// in every host's clock alike, and so in no difference between them.
 //
 // A service. A slave without the line, or whose receiver sends no time within 10 s, reports
 // that as its outcome.

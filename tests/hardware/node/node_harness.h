@@ -51,7 +51,7 @@ class MadeUpCameras final : public CameraDriver {
 
   // open() throws this for the camera of that name.
   std::map<std::string, std::string> refusals;
-  // Of all cameras; null: they have none.
+  // All cameras have this one; null: they have none.
   std::shared_ptr<CameraSteering> steering;
   // What stopping a camera takes, as real ones do.
   std::chrono::milliseconds stop_takes{0};
