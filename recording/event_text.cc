@@ -14,7 +14,7 @@ namespace simbench {
 namespace {
 
 constexpr std::string_view kFrameKind = "frame";
-// Of each RecordingEvent, in its order.
+// The kinds of RecordingEvent, in its order.
 constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
     "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led"};
 static_assert(!kKinds.back().empty(), "every event has a kind");

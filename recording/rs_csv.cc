@@ -116,7 +116,7 @@ std::optional<Header> parse_header(const std::vector<std::string_view>& cells,
   return header;
 }
 
-// Of a header of any columns.
+// Finds the separator of a header, whatever its columns.
 char separator_of(std::string_view line) {
   char best = ',';
   for (const char candidate : {';', '\t'}) {

@@ -19,7 +19,7 @@ function prose(line) {
 FNR == 1 { in_code = 0 }
 {
   text = prose($0)
-  while (match(text, "^" openers) || match(text, "[.:;?!][)]? +" openers)) {
+  while (match(text, "^" openers) || match(text, "[.:;?!][*_)]* +" openers)) {
     found = substr(text, RSTART, RLENGTH)
     gsub(/^[^A-Z]*|[ ,:;]*$/, "", found)
     file = FILENAME

@@ -4,8 +4,8 @@
 // A camera's k-th instant is k periods after the zero of the master's clock, on every host. The
 // error of a frame against the nearest instant is taken off the length of one frame, all of it, in
 // the direction that needs fewer frames; then the algorithm waits until the stamps show what that
-// did. So a control that was lost, or a camera's own rate, is corrected with the next one. What is
-// below half a granule stays.
+// did. The next control therefore corrects a control that was lost, and a camera's own rate. An
+// error below half a granule stays.
 //
 // The period is the cameras' nominal one and not the granule nearest to it, so that cameras of
 // different granularities keep the same grid: an ace has it from its clock of 1 ns.

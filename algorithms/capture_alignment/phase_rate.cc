@@ -70,7 +70,7 @@ struct PhaseRateSettings {
 
 // Errors below it are reported as aligned, if no step of the camera is larger.
 constexpr Nanoseconds kReportedTolerance = from_ms(1);
-// Of the insert band, that a goal may be wrong by.
+// A goal may be wrong by this share of the insert band.
 constexpr double kUnknownShare = 0.125;
 
 // An instant of the grid, as the cameras of a host know it.

@@ -7,9 +7,9 @@
 // again, which takes out what their oscillators have drifted.
 //
 // The first start is asked for once the camera runs. A start that was lost leaves the exposures
-// where they were. So where they did not move by more
-// than `moved_us` the first start is repeated, three times in all; a camera that happened to be in
-// phase is then reported as not aligned.
+// where they were. The first start is therefore repeated where they did not move by more than
+// `moved_us`, three times in all; a camera that happened to be in phase is then reported as not
+// aligned.
 
 #include <memory>
 #include <string>

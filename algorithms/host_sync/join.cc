@@ -23,8 +23,8 @@ struct JoinState {
 };
 
 // Asio posts the cancellations of a group that has a failure, and they must not arrive after the
-// group. So the last one to end does not fail it, and one that ends after a failure waits for its
-// own cancellation.
+// group. The last task to end therefore does not fail the group, and one that ends after a failure
+// waits for its own cancellation.
 Task<void> joined(Task<void> task, JoinState& state) {
   std::exception_ptr failure;
   try {

@@ -19,9 +19,9 @@ struct PlainEvent {
 };
 
 // An event and its place in the order of insertion in 16 bytes, which compare as one number: from
-// the top 64 bits of time, 35 of sequence, 3 of kind and 26 of subject. So it holds 3.4e10 events
-// of up to 8 kinds and 6.7e7 subjects, which is all that the workloads need and less than a general
-// engine does.
+// the top 64 bits of time, 35 of sequence, 3 of kind and 26 of subject. It holds 3.4e10 events of
+// up to 8 kinds and 6.7e7 subjects: all that the workloads need, and less than a general engine
+// does.
 __extension__ typedef __int128 PackedEvent;
 
 constexpr int kSequenceBits = 35;

@@ -20,7 +20,7 @@ constexpr double kDisturbedFrom = 0.01;  // of a frame's length or exposure
 constexpr double kWrongLockFrom = 0.1;   // of the period
 constexpr std::int32_t kCountsForNone = -1;
 
-// So that differences do not overflow.
+// Keeps differences from overflowing.
 std::int64_t bounded_ns(TrueTime time) {
   constexpr std::int64_t kFarthestNs = (std::int64_t{1} << 62) - 1;
   return std::clamp(nanoseconds_of(time), -kFarthestNs, kFarthestNs);

@@ -41,7 +41,7 @@ class RigBags {
       files_.push_back(write_sdk_bag(camera, folder_.path()));
   }
 
-  // Of a rig that has the same cameras.
+  // The rig must have the same cameras.
   evaluation::Diagnosis diagnosed(const Rig& rig) const {
     const TemporaryFolder changed;
     std::vector<std::string> files = files_;

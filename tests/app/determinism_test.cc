@@ -43,8 +43,8 @@ TEST(Determinism, ResultsDependOnNeitherThreadsNorCompilerNorFlags) {
   }
 }
 
-// Of pipelines of one host_sync, with messages and with clocks left alone, and of both worlds:
-// with a load for each pipeline, and without.
+// Pipelines of one host_sync share a capture, with messages and with clocks left alone, and in both
+// worlds: with a load for each pipeline, and without.
 TEST(Determinism, SharedCapturesGiveTheSameBytes) {
   for (const char* name : {"18cam_6host_45fps", "leaderboard_lan"}) {
     scenarios::Scenario scenario = scenarios::load_scenario(name, {{"/timeline/frames", "60"}});

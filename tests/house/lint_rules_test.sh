@@ -77,7 +77,7 @@ const char* code = "Of Of Of";
 FILE
 cat > page.md <<'FILE'
 So it is.
-- Of many, one.
+- Of many, one. **It is bold.** Nor is this.
 
     So is code.
 
@@ -92,6 +92,7 @@ echo "So what"
 FILE
 expect openers.awk text.cc page.md script.sh <<'FOUND'
 page.md:1: a sentence opens with "So": begin with its subject
+page.md:2: a sentence opens with "Nor": begin with its subject
 page.md:2: a sentence opens with "Of": begin with its subject
 page.md:9: a sentence opens with "So": begin with its subject
 script.sh:1: a sentence opens with "Nor": begin with its subject

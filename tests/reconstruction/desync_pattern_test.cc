@@ -39,7 +39,7 @@ TEST(DesyncPattern, CamerasOfOneHostExposeTogether) {
   EXPECT_EQ(instants.size(), 6U);
 }
 
-// So that points of a curve are paired.
+// The one pattern pairs the points of a curve.
 TEST(DesyncPattern, IsTheSamePatternAtEveryDesynchronisation) {
   const scenarios::Scenario scenario = studio_scenario();
   const auto small = desynchronised_set(scenario, 4, 10, 0, 0);

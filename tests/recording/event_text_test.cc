@@ -85,7 +85,7 @@ TEST(EventTextTest, ReadsBackWhateverWasWritten) {
   }
 }
 
-// So a damaged line is either an error or the line of another event, never half-understood.
+// A damaged line is thus either an error or the line of another event, never half-understood.
 TEST(EventTextTest, WhatIsReadIsWhatWouldBeWritten) {
   const auto seed = std::random_device{}();
   SCOPED_TRACE(testing::Message() << "seed " << seed);

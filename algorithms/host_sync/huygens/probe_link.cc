@@ -13,7 +13,7 @@ constexpr double kProbesVary = 0.2;
 constexpr int kWindowsKept = 3;
 constexpr std::size_t kFewestPoints = 4;
 
-// Of the vertices, no more than a message holds: evenly chosen, with both ends. Each is a bound.
+// No more vertices than a message holds: evenly chosen, with both ends. Each is a bound.
 std::vector<LinePoint> thinned(std::span<const LinePoint> vertices) {
   constexpr std::size_t kMost = BoundsMessage::kMostVertices;
   if (vertices.size() <= kMost) return {vertices.begin(), vertices.end()};

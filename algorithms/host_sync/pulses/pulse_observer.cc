@@ -14,7 +14,7 @@ constexpr double kStrangePart = 0.25;
 // Each pass multiplies the error by the slope of the envelope.
 constexpr int kPasses = 5;
 
-// Of the mean of values that differ by chance.
+// The standard error of the mean of values that differ by chance.
 double standard_error(std::span<const double> values) {
   const auto count = static_cast<double>(values.size());
   if (values.size() < 2) return 0;

@@ -103,7 +103,7 @@ TEST(PhaseRateTest, ALostControlShowsInTheStampsAndIsRepeated) {
 }
 
 // With a band of 0.1 ms and a rate of 20 ppm it is put 100 us ahead, which is half of what it
-// drifts in 10 s, and goes on until it is 200 us late: some 15 s. So are the next ones.
+// drifts in 10 s, and goes on until it is 200 us late: some 15 s. The next ones last as long.
 TEST(PhaseRateTest, WhereFramesCanOnlyBeInsertedOneLastsAsLongAsItCan) {
   FakeRig rig(2);
   rig.add(0, phone(from_ms(3), 2));

@@ -17,7 +17,7 @@ Nanoseconds last_difference(const FakeCamera& client, const FakeCamera& server) 
   return phase_error(client.middles().back() - server.middles().back(), kPiPeriod);
 }
 
-// Of a client whose frames are this much later than the server's, after the whole run.
+// The controls of a client whose frames are this much later than the server's, after the whole run.
 std::vector<FakeControl> controls_of_client(Nanoseconds later, Nanoseconds delay = from_ms(8)) {
   FakeRig rig(2);
   const FakeCamera& server = rig.add(0, {.phase = from_ms(0)});

@@ -107,7 +107,7 @@ class PlainTheilSen {
  public:
   explicit PlainTheilSen(std::size_t frames) : frames_(frames) {}
 
-  // Of the offset, in ns, at sensor time x_us.
+  // The offset, in ns, at sensor time x_us.
   double offset(double x_us, double y_ns) {
     points_.emplace_back(x_us, y_ns);
     if (points_.size() > frames_) points_.erase(points_.begin());

@@ -180,7 +180,7 @@ class ScriptHost::Channel : public MessageChannel {
     co_return message;
   }
 
-  // Of the last message only.
+  // Knows the last message only.
   Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime /*deadline*/) override {
     if (!host_.stamps_departures || id != sent_) co_return std::nullopt;
     co_return last_departure_;

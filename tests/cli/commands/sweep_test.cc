@@ -135,7 +135,7 @@ TEST_F(SweepTest, PointsOfOneCaptureAreThoseOfSweepsOfTheirOwn) {
 TEST_F(SweepTest, OfAPointAndSeedOnlyWhatIsMissingIsRun) {
   ASSERT_EQ(run(command("whole")).status, 0);
   ASSERT_EQ(run(command("out")).status, 0);
-  // Of point 0, raw_arrival, seed 1; genlock at the same point and seed stays.
+  // The line is that of point 0, raw_arrival, seed 1; genlock at the same point and seed stays.
   const std::string log = content("out/runs.log");
   file("out/runs.log", log.substr(log.find('\n') + 1));
   const ProgramResult result = run(command("out"));

@@ -28,7 +28,7 @@ void read_out(ClockScorer& scorer, std::int64_t last_s, const ErrorsMs& errors_m
   }
 }
 
-// Of a run of 100 s that is measured from 10 s on, with two slaves, up to `last_s`.
+// Scores a run of 100 s that is measured from 10 s on, with two slaves, up to `last_s`.
 MetricValues<double> clock_values(std::int64_t last_s, const ErrorsMs& errors_ms) {
   ClockScorer scorer({.duration = seconds(100), .from = seconds(10), .hosts = 3});
   read_out(scorer, last_s, errors_ms);

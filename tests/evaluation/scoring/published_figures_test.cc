@@ -66,7 +66,7 @@ TEST(PublishedFigure, ABoundFailsIfNearlyAllSeedsBreakIt) {
 }
 
 TEST(PublishedFigure, ABoundIsInsideIfManySeedsKeepItAndManyDoNot) {
-  // Of a thousand seeds 90 % keep it: from 88 to 92 %.
+  // 90 % of a thousand seeds keep it: from 88 to 92 %.
   EXPECT_EQ(verdict_of(at_most(2), 900, 100), FigureVerdict::kInside);
   EXPECT_EQ(verdict_of(at_least(2), 900, 100), FigureVerdict::kInside);
   EXPECT_EQ(verdict_of(at_most(2), 1, 1), FigureVerdict::kTooFewSeeds);

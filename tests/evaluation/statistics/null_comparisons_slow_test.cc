@@ -14,7 +14,7 @@ namespace simbench::evaluation {
 namespace {
 
 constexpr int kComparisons = 200;
-// Of 200 comparisons at 5 % each, more than this in one of a thousand trials.
+// More than this of 200 comparisons, at 5 % each, are false in one of a thousand trials.
 constexpr int kMostFalse = 20;
 
 constexpr std::size_t kPipelines = 9;

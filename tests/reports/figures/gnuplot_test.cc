@@ -58,7 +58,7 @@ Figure photographs() {
   return figure;
 }
 
-// Of a changed world.
+// The source names a changed world.
 FigureSource sample_source() {
   return {.scenario = "sample",
           .derivation = {.base = "sample", .changes = {{"/a", "1", "2"}}},

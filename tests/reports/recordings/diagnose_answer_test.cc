@@ -46,7 +46,7 @@ TEST(DiagnoseAnswer, SaysThatTheSyncWorksAndWhatStampsCannotShow) {
   EXPECT_THAT(text, Not(HasSubstr("drifts most")));
 }
 
-// 60 ppm are 3.6 ms a minute: 33.3 ms within 9.26 minutes. Of two cameras either may be the one.
+// 60 ppm are 3.6 ms a minute: 33.3 ms within 9.26 minutes. Either of two cameras may be the one.
 TEST(DiagnoseAnswer, NamesTheCameraThatDrifts) {
   const std::string text = diagnosis_text(60);
   EXPECT_THAT(text, HasSubstr("hardware sync does not work, because free-running"));

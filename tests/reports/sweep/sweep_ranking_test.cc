@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-// Of the hosts' clocks alone; three poll intervals, 16 seeds.
+// Sweeps the hosts' clocks alone; three poll intervals, 16 seeds.
 SweepPlan plan_of_clocks() {
   SweepPlan plan;
   plan.scenario = "star";

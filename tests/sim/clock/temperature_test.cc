@@ -131,7 +131,7 @@ TEST(TemperatureCourse, PhasesAreUniformAndOfEachHostItsOwn) {
     squares += part * part;
     if (part > 0.5) ++above_half;
   }
-  // Of a sine at a uniform phase: mean square 1/2, above a half for a third of the turn.
+  // A sine at a uniform phase has the mean square 1/2 and is above a half for a third of the turn.
   EXPECT_NEAR(squares / kHosts, 0.5, 5 * 0.354 / std::sqrt(kHosts)) << "seed " << kCourseSeed;
   EXPECT_NEAR(above_half / static_cast<double>(kHosts), 1.0 / 3, 5 * 0.471 / std::sqrt(kHosts));
 }

@@ -27,7 +27,7 @@ struct ServiceLimits {
   // A server that never answers is one outcome, which says so.
   double silent_s = 2 * kHour;
   std::string silent_message = "no valid packet";
-  // Of three slaves, with loss, duplicates and reordering.
+  // Three slaves must be this good, with loss, duplicates and reordering.
   double lossy_s = 12 * kHour;
   double lossy_error_s = 20e-3;
   // An asymmetry that no stamp shows; 0: not tried, without two-way stamps nothing is seen.

@@ -126,7 +126,7 @@ std::vector<double> delays_ms(const scenarios::CalibrationError& error, std::uin
 }
 
 constexpr std::uint64_t kErrorSeeds = 400;
-// Of a standard deviation from 400 draws: 4 of its own standard errors.
+// A standard deviation from 400 draws may be off by 4 of its own standard errors.
 constexpr double kSigmaTolerance = 4 / 28.0;
 
 TEST(CalibrationError, OfTheModelIsOneDrawPerSeed) {

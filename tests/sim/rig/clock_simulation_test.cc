@@ -37,7 +37,7 @@ struct KeptReadings final : ClockSink {
   void on_errors(TrueTime at, std::span<const double> errors_s) override {
     readings.push_back({to_seconds(at.time_since_epoch()), {errors_s.begin(), errors_s.end()}});
   }
-  // Of the reading at that second, which must exist.
+  // The errors of the reading at that second, which must exist.
   const std::vector<double>& at(double second) const {
     for (const Reading& reading : readings) {
       if (std::abs(reading.at_s - second) < kNanosecond) return reading.errors_s;

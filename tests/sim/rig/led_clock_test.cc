@@ -141,7 +141,7 @@ TEST(LedClock, IsLookedAtOnceInAnInterval) {
     // It is the interval's first frame.
     EXPECT_LT(to_ms(at % from_ms(200)), 1e3 / 45 + 1e-6);
   }
-  // Of 16 intervals some images cannot be read.
+  // Some images of the 16 intervals cannot be read.
   EXPECT_GT(intervals.size(), 20U);
   EXPECT_LE(intervals.size(), 32U);
 }

@@ -116,7 +116,7 @@ TEST(StampIntervals, ArrivalsJumpInTheNominalWorldsAlone) {
                                    [&](double late) { return late > 3.5 * transfer_ms; });
     const double share = static_cast<double>(big) / static_cast<double>(late_ms.size());
     if (jumps) {
-      // Of a hundredth of the frames, an eighth and more: jumps are uniform to 4 transfer times.
+      // An eighth and more of a hundredth of the frames: jumps are uniform to 4 transfer times.
       EXPECT_GT(share, 0.0005) << name;
       EXPECT_LT(share, 0.01) << name;
     } else {

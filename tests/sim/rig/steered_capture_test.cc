@@ -32,7 +32,7 @@ class Exposures final : public TestSink {
     if (const auto* report = std::get_if<AlignmentReport>(&event)) reports.push_back(*report);
   }
 
-  // Of a camera: the lengths of frames that differ from the usual one by more than 0.1 ms.
+  // The lengths of a camera's frames that differ from the usual one by more than 0.1 ms.
   std::vector<double> unusual_ms(std::size_t camera) const {
     std::vector<double> lengths;
     for (std::size_t i = 1; i < middles[camera].size(); ++i) {
