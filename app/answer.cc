@@ -20,7 +20,7 @@ using scenarios::Scenario;
 constexpr std::uint64_t kMostBudgetSeeds = 4;
 constexpr double kMostBudgetEvents = 20e6;
 
-// As many seeds as are cheap, going by the events of a mean run.
+// Returns as many seeds as are cheap, going by the events of a mean run.
 std::uint64_t affordable_seeds(const Results& results, const Pipeline& pipeline) {
   const std::uint64_t runs = results.rows.size() * results.seed_count;
   if (runs == 0 || results.performance.events == 0) return 0;

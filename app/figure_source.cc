@@ -80,7 +80,7 @@ class FigureMaker {
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
 
-  // In place of the simulator.
+  // Takes runs from this in place of the simulator.
   void take_runs_from(evaluation::WorldFactory make_world) { make_world_ = std::move(make_world); }
 
   bool wants(const std::string& id) const {

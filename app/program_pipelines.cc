@@ -29,7 +29,7 @@ std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-// As built, as installed, or where the caller says.
+// The library lies where it was built, was installed, or where the caller says.
 std::string find_shim(const std::string& folder) {
   if (!folder.empty()) return folder + "/libsimbench_shim.so";
   for (const char* place : {"../lib/libsimbench_shim.so", "../lib/simbench/libsimbench_shim.so"}) {

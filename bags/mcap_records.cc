@@ -18,7 +18,7 @@ constexpr std::size_t kMostRecordRead = std::size_t{64} << 10;
 constexpr std::size_t kMostNames = std::size_t{32} << 20;
 constexpr std::string_view kLastMagic = "\x89MCAP0\r\n";
 
-// As much of a record's content as its names can be in.
+// Reads as much of a record's content as its names can be in.
 std::string record_start(ByteStream& content, std::uint64_t length) {
   std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(length, kMostRecordRead)),
                     '\0');

@@ -393,7 +393,7 @@ std::optional<std::int64_t> SqliteBagReader::first_from(std::int64_t id) {
   return found >= id ? std::optional(found) : std::nullopt;
 }
 
-// In steps that double, then back by halves: a page more or less is what can be missed.
+// Goes on in steps that double, then back by halves: it can miss a page more or less.
 std::optional<std::int64_t> SqliteBagReader::readable_after(std::int64_t damaged) {
   std::int64_t bad = damaged - 1;
   std::optional<std::int64_t> good;

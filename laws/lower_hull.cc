@@ -28,7 +28,7 @@ void make_way(std::vector<Point>& hull, const Point& point) {
   hull.resize(size);
 }
 
-// At one x the lowest point counts.
+// The lowest point counts if several have one x.
 template <class Point>
 void extend(std::vector<Point>& hull, const Point& point) {
   if (!hull.empty() && hull.back().x == point.x) {

@@ -18,7 +18,7 @@
 namespace simbench::processes {
 namespace {
 
-// As far as the newest kernel goes; the headers may be older.
+// The newest kernel knows all of these; the headers may be older.
 constexpr std::uint64_t kRead =
     LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t kMakeAndRemove = 0x1FF0;      // each kind of file, since version 1

@@ -14,7 +14,7 @@
 namespace simbench::scenarios {
 namespace {
 
-// As careful as a user's reading of it.
+// Rounds as a careful user would read it.
 double rounded(double value_ms) { return std::round(value_ms * 100) / 100; }
 
 double latency_ms(const Stream& stream) {

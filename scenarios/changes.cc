@@ -14,7 +14,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kLongestListed = 32;
 
-// Without what is no part of the world; pipelines are compared by name.
+// Leaves out what is no part of the world; pipelines are compared by name.
 json world_of(json scenario) {
   static const std::vector<std::string> no_world = pointers_that_say("x-world", false);
   for (const std::string& pointer : no_world) {

@@ -338,7 +338,7 @@ struct Resolved {
   std::vector<SourceLayer> stages{};  // the most basic one first
   Derivation derivation{};
 
-  // As the file of that level leaves it; null: a --set does, so it is the resolved scenario.
+  // The scenario as the file of that level leaves it; null: a --set does, it is the resolved one.
   const SourceLayer* stage_of(std::size_t level) const {
     const auto found =
         std::find_if(stages.begin(), stages.end(),

@@ -21,7 +21,7 @@ void warn(Lines& lines, const Scenario& scenario, const std::string& pointer,
   lines.push_back(scenario.origin->describe(pointer) + ": " + text);
 }
 
-// In 1e6 bytes per second.
+// The bytes that a camera sends, in 1e6 per second.
 double camera_load_mb_per_s(const Scenario& scenario) {
   double load = 0;
   for (const Stream& stream : scenario.cameras.streams) {

@@ -1,5 +1,5 @@
-// Chance: every random byte comes from the world, so that a run repeats. And read() and write() of
-// what is not real.
+// Chance: every random byte comes from the world, so that a run repeats. This file also has read()
+// and write() of descriptors that are not real.
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>

@@ -100,7 +100,7 @@ SIMBENCH_CALL int ntp_gettimex(ntptimeval* result) {
   return state;
 }
 
-// And what older ones call. The header gives ntp_gettime() the name above.
+// Older programs call this one. The header gives ntp_gettime() the name above.
 SIMBENCH_CALL int ntp_gettime_by_its_name(ntptimeval* result) __asm__("ntp_gettime");
 int ntp_gettime_by_its_name(ntptimeval* result) { return ntp_gettimex(result); }
 

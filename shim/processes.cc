@@ -1,7 +1,7 @@
 // Other processes, of which there are none: a program of the simulated world is one process, in the
 // foreground. Those that libc starts with all signals blocked are named here, since the kernel's
-// filter (shim/refused_calls.h) could only kill; so is fork(), for a better text. And the program's
-// own number, which the world gives.
+// filter (shim/refused_calls.h) could only kill; so is fork(), for a better text. The program's own
+// number is here too: the world gives it.
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>

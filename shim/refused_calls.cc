@@ -38,7 +38,7 @@ constexpr unsigned long kRestorer = SA_RESTORER;
 constexpr unsigned long kRestorer = 0x04000000;
 #endif
 
-// By the system call itself: the filter lets nobody else have this signal.
+// Makes the system call itself: the filter lets nobody else have this signal.
 __attribute__((constructor)) void name_refused_calls() {
   if (getenv(kLinkVariable) == nullptr) return;
   const KernelAction action{.handler = on_refused_call,

@@ -1,8 +1,8 @@
 // Who the program is: root on its simulated host, where every user and group exists and is root.
 //
-// Most of it the kernel's filter answers (Refusal::kIgnored in shim/refused_calls.h): calls that
-// drop or ask for rights succeed without effect. Here is what fills in memory. No user database of
-// the machine is read, so that a run is the same on all machines.
+// The kernel's filter answers most calls (Refusal::kIgnored in shim/refused_calls.h): those that
+// drop or ask for rights succeed without effect. This file answers those that fill in memory. No
+// user database of the machine is read, so that a run is the same on all machines.
 #include <errno.h>
 #include <grp.h>
 #include <linux/capability.h>
@@ -44,7 +44,7 @@ void fill_entry(group& result, char* name) {
   result.gr_mem = no_members;
 }
 
-// As getpwnam_r() and getgrnam_r().
+// Does what getpwnam_r() and getgrnam_r() do.
 template <class Entry>
 int find_named(const char* name, Entry* result, char* room, std::size_t size, Entry** found) {
   *found = nullptr;
@@ -56,7 +56,7 @@ int find_named(const char* name, Entry* result, char* room, std::size_t size, En
   return 0;
 }
 
-// As getpwnam() and getgrnam(): an entry of the library's own.
+// Does what getpwnam() and getgrnam() do: the entry is the library's own.
 template <class Entry>
 Entry* find_named(const char* name) {
   static char room[kMostUserName];

@@ -10,11 +10,11 @@
 // inserted. Where only the inserted one is longer, each iteration halves what is left; a share of 1
 // suits such cameras.
 //
-// What a phone does by an exposure alone is a frame of that length here; so the overhead counts
-// only where the least exposure does. The configurations' periods and least exposures are those of
-// one phone model and rate: here the camera's own nominal period, and how far the least exposure
-// lies above that. The latest frame's phase counts, unfiltered. The start is the leader's button,
-// pressed `start_s` after the cameras began.
+// A phone inserts a frame by its exposure alone; here it is a frame of that length, so the overhead
+// counts only where the least exposure does. The configurations have periods and least exposures of
+// one phone model and rate; here they are the camera's own nominal period, and how far the least
+// exposure lies above that. The latest frame's phase counts, unfiltered. The start is the leader's
+// button, pressed `start_s` after the cameras began.
 
 #include <algorithm>
 #include <memory>

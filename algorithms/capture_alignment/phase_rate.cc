@@ -1,10 +1,10 @@
 // phase_rate: every camera on one grid of the common time, by its own estimate of phase and rate.
 //
-// Where one of the master's cameras happens to expose is the grid, so that it need not move: the
-// first that knows its phase. The master tells the other hosts one instant of the grid, again and
-// again, and nothing else. Each host steers its own cameras. A camera's exposures are followed by a
-// line (phase_line.h) that knows all moves, so stamps are averaged over seconds and a frame to come
-// is corrected before it is late:
+// The grid is where one of the master's cameras happens to expose, the first that knows its phase:
+// it need not move. The master tells the other hosts one instant of the grid, again and again, and
+// nothing else. Each host steers its own cameras. A line that knows all moves (phase_line.h)
+// follows a camera's exposures, so stamps are averaged over seconds and a frame to come is
+// corrected before it is late:
 //
 //   - once the phase is known, one frame takes up all of its error: the only disturbed one;
 //   - from then on one frame is longer or shorter by a granule or a few, whenever the error that
@@ -230,7 +230,7 @@ Task<bool> PhaseRateCamera::correct(std::uint32_t from, double error_ns) {
   co_return true;
 }
 
-// From the first frames after an inserted one.
+// The first frames after an inserted one show the gain.
 void PhaseRateCamera::learn_gain() {
   if (inserted_.count() == 0 || knows_gain_) return;
   const double moved_ns = line_.error_ns(quiet_until_) - before_insert_ns_;

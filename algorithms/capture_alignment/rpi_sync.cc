@@ -13,7 +13,7 @@
 // frames come a whole period later than the server's packets, each packet costs a frame. There is
 // no feedback but the next packet, 30 frames later, and no estimate of the rate.
 //
-// Both are ready once the server has had `ready_frame` frames; that is what is reported. A
+// Server and clients are ready once the server has had `ready_frame` frames, and report that. A
 // correction that the frame's limits cut is reported instead. The other cameras of the server's
 // host are clients too.
 //

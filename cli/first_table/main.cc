@@ -2,7 +2,7 @@
 //
 // Half of simbench is not needed for that - nodes and rigs, bags, pages, studies - and takes half
 // of the time to compile. tools/run shows the first table in a fresh clone with this program, and
-// builds simbench after it. It has no options; a scenario with programs is none of its.
+// builds simbench after it. It has no options and runs no scenario with programs.
 #include <fmt/format.h>
 
 #include <exception>

@@ -102,7 +102,7 @@ Scenario without_causes(const Scenario& scenario, std::size_t ideal) {
   Scenario world = scenarios::with_ideal_stages(scenario, causes);
   world.published.clear();
   const std::vector<double>& table_ms = scenario.network.latency_quantiles_ms;
-  // Without the table, the constant latency is the least of it.
+  // A world that has lost the table has its least value as the constant latency.
   if (world.network.latency_quantiles_ms.size() < table_ms.size()) {
     world.network.latency_fixed_ms = table_ms.front();
   }

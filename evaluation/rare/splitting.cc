@@ -186,7 +186,7 @@ class Splitting {
     }
   }
 
-  // For the next level: smaller changes where too few were accepted, larger ones where many were.
+  // The next level makes smaller changes where too few were accepted, larger ones where many were.
   static std::array<double, kKinds> adapted(const Moves& moves) {
     constexpr double kFew = 0.2;
     constexpr double kMany = 0.4;

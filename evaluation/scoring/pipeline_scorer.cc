@@ -18,7 +18,7 @@
 namespace simbench::evaluation {
 namespace {
 
-// By the first frame; none until then.
+// The first frame decides which order it is; none until then.
 using FrameOrder = std::variant<std::monostate, TrueOrder, StampOrder, UnknownOrder>;
 
 GlobalTime on_global_scale(HostTime time) { return GlobalTime(time.time_since_epoch()); }

@@ -1,4 +1,4 @@
-// chrony's tracking.log and statistics.log.
+// Reads chrony's tracking.log and statistics.log.
 #include <fmt/format.h>
 
 #include <chrono>

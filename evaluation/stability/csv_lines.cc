@@ -1,4 +1,4 @@
-// CSV of seconds and time errors.
+// Reads CSV of seconds and time errors.
 #include <fmt/format.h>
 
 #include <algorithm>

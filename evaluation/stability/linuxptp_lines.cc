@@ -1,4 +1,4 @@
-// What ptp4l and phc2sys print, alone or behind the head of a syslog or a journal.
+// Reads what ptp4l and phc2sys print, alone or behind the head of a syslog or a journal.
 #include <fmt/format.h>
 
 #include <algorithm>

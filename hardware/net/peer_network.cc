@@ -46,7 +46,7 @@ constexpr Nanoseconds kLastRetry = std::chrono::seconds(1);
 constexpr Nanoseconds kSendPatience = std::chrono::seconds(1);
 constexpr std::size_t kMaxPeerMessage = 64u << 10;
 
-// By their value.
+// The transports in the order of their values.
 constexpr std::array kTransports = {Transport::kStream, Transport::kDatagram,
                                     Transport::kAlignment};
 

@@ -1,4 +1,4 @@
-// Comparisons for people.
+// Makes tables of comparisons for people.
 #include <fmt/format.h>
 
 #include <cmath>

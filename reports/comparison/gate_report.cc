@@ -1,4 +1,4 @@
-// The reports of a gate: text, JSON, JUnit.
+// Writes the reports of a gate: text, JSON, JUnit.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -98,7 +98,7 @@ std::string failures(const GateReport& report) {
   return text.empty() ? text : "\n" + text;
 }
 
-// In exact mode all changes; in statistical mode, where everything changes, significant ones.
+// Exact mode shows all changes; statistical mode, where everything changes, significant ones.
 bool is_shown(const GateReport& report, const GateCheck& check) {
   if (check.outcome == GateOutcome::kSame) return false;
   return report.mode == GateMode::kExact || check.outcome != GateOutcome::kChanged;

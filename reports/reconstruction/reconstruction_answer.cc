@@ -78,7 +78,7 @@ std::string others_text(const std::vector<const ReprojectionRow*>& sorted) {
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
-// For the scenario's own speed, or the first.
+// The text is about the scenario's own speed, or the first.
 std::string tolerance_text(const ReconstructionResults& results) {
   const std::vector<SyncLimit> limits = sync_limits(results.curve);
   if (limits.empty()) return "";

@@ -30,7 +30,7 @@ constexpr std::size_t kNamedEquals = 2;  // of those that cannot be told from th
 constexpr double kSmallShare = 0.05;     // parts of a budget below this have no name
 constexpr double kMuchLarger = 3;        // absolute error / AMD that deserves a word
 constexpr double kWorthWinning = 0.01;   // of the error
-// With that stage alone being ideal.
+// What each stage would give if it alone were ideal.
 constexpr std::array<const char*, kStageCount> kIdeals = {"pulses on time",
                                                           "equal exposures",
                                                           "stamps without noise or steps",

@@ -207,7 +207,7 @@ std::string cost_line(const Results& results) {
       short_text(cost.events_per_second), short_text(cost.simulated_seconds_per_second));
 }
 
-// With the first reason, mostly the reason of all.
+// The line has the first reason, which is mostly the reason of all.
 std::string unsynchronised_line(const Row& row) {
   const std::string times =
       row.unsynchronised_hosts == 1 ? "once" : count_text(row.unsynchronised_hosts) + " times";

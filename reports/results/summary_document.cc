@@ -107,7 +107,7 @@ Block rows_block(const Results& results) {
   return block;
 }
 
-// By the spread of the exposures, the least first; rows without one last.
+// Ranks rows by the spread of their exposures, the least first; rows without one come last.
 Block spread_block(const Results& results) {
   constexpr RankedBy ranked_by = RankedBy::kExposureSpread;
   std::vector<const Row*> rows = pointers_to(results.rows);

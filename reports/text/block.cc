@@ -29,7 +29,7 @@ std::string markdown_cell(const std::string& text) {
   return escaped;
 }
 
-// With what a terminal would obey as \xHH: names may come from a file that anyone wrote.
+// Writes what a terminal would obey as \xHH: names may come from a file that anyone wrote.
 Table printable(Table table) {
   for (Column& column : table.columns) column.header = printable_lines(column.header);
   for (std::vector<std::string>& row : table.rows) {
@@ -52,7 +52,7 @@ Document printable(Document document) {
   return document;
 }
 
-// Without the empty line before the first part of a document.
+// Drops the empty line before the first part of a document.
 std::string without_first_break(std::string text) {
   if (text.starts_with('\n')) text.erase(0, 1);
   return text;
@@ -78,7 +78,7 @@ std::string markdown_block(const Block& block, const char* level) {
   return out;
 }
 
-// With a minus where a number has one.
+// Sets a minus where a number has one.
 std::string latex_cell(const std::string& text) {
   const bool is_negative = text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9';
   return is_negative ? "$-$" + latex_escaped(text.substr(1)) : latex_escaped(text);

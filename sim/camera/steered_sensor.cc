@@ -38,7 +38,7 @@ Nanoseconds SteeredSensor::exposure_of(std::int64_t frame) const {
   return lengths_.exposure(frame).value_or(exposure_);
 }
 
-// From the readout of that frame to the next, into which the next exposure has to fit.
+// The time from the readout of that frame to the next; the next exposure has to fit into it.
 Nanoseconds SteeredSensor::length_after(std::int64_t frame) const {
   const Nanoseconds wanted = lengths_.of(frame);
   const Nanoseconds step = settings_.limits.granularity;

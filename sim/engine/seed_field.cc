@@ -65,7 +65,7 @@ std::uint64_t SeedField::replaced(std::uint64_t word) const {
     return SplitMix64::mix(SplitMix64(word ^ step.factor)() + step.key);
   };
   std::uint64_t renewed = word;
-  // From the last mutation that renewed the word on.
+  // Mutations count from the last one that renewed the word on.
   std::size_t first = steps_.size();
   bool is_moved = false;
   while (first > 0) {

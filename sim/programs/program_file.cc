@@ -42,7 +42,7 @@ class ProgramFile {
     if (!in_) refuse(path, std::strerror(errno));
   }
 
-  // As much as there is.
+  // Returns as much as there is.
   std::string text(std::uint64_t offset, std::size_t size) {
     std::string result(size, '\0');
     in_.clear();

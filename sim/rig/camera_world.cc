@@ -296,7 +296,7 @@ bool CameraWorld::is_each_stream_once(const std::vector<Step>& offers) {
   });
 }
 
-// From this offer on, as long as they meet no others under way; returns the next one.
+// Passes offers from this one on, as long as they meet no others under way; returns the next one.
 auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before)
     -> std::vector<Step>::iterator {
   for (; next != bus.offers.end() && next->at < before; ++next) {

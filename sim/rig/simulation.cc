@@ -63,7 +63,7 @@ class SharedCameras {
                                          steering);
   }
 
-  // In the present world.
+  // The present world's stamps of a capture that starts then.
   CameraStamps& stamps(TrueTime start) {
     const auto has_start = [start](const auto& stamps) { return stamps->start() == start; };
     auto found = std::ranges::find_if(stamps_, has_start);

@@ -97,7 +97,7 @@ class ChronyClient {
   Task<void> slew(double offset_s, double rate);
   // The measurement that is complete with this reply: in interleaved mode the one before.
   std::optional<Pending> completed(const NtpMeasurement& reply);
-  // As seen by the clock that has finished its slew.
+  // The measurement as the clock sees it that has finished its slew.
   Pending pending(const NtpMeasurement& measurement) const;
   ChronySample sample_of(const Pending& complete) const;
   Nanoseconds interval() const;
@@ -370,7 +370,7 @@ void ChronySettings::bind(ParameterBinder& parameters) {
 
 namespace {
 
-// As Debian installs it, but for what `settings` say of polls and stamps.
+// Configured as Debian installs it; `settings` say what differs: polls and stamps.
 HostSyncEntry chrony(const char* name, const char* summary, ChronySettings settings) {
   settings.reference.max_update_skew_ppm = 100;
   settings.reference.step_updates = 3;

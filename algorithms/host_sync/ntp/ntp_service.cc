@@ -95,7 +95,7 @@ NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
       outcome_(host) {}
 
 Task<void> NtpClient::run() {
-  // From a drift file, or 0.
+  // The frequency is that of a drift file, or 0.
   if (discipline_.frequency() != 0) co_await correct_frequency();
   if (settings_.mode == NtpMode::kUnicast) {
     co_await run_unicast();

@@ -14,7 +14,7 @@ constexpr double kMostSlope = 1e-3;
 // A line without a pulse for so long has none.
 constexpr Nanoseconds kGnssPatience{10'000'000'000};
 
-// Without `outcome` for the master, whose own clock is nobody's outcome.
+// The master passes no `outcome`: its own clock is nobody's outcome.
 Task<void> follow(Host& host, GnssSettings settings, std::optional<OutcomeReport> outcome) {
   PulseInput* const input = host.pulse_input(PulseLine::kPps);
   if (input == nullptr) {
