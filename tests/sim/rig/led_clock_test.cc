@@ -236,7 +236,7 @@ TEST(LedClock, MovesNobodyElsesNumbersAndRepeats) {
   std::string left;
   for (std::size_t at = 0; at < with.size();) {
     const std::size_t next = with.find('\n', at) + 1;
-    if (!with.substr(at).starts_with("led ")) left += with.substr(at, next - at);
+    if (!with.substr(at).starts_with("led,")) left += with.substr(at, next - at);
     at = next;
   }
   s.cameras.led_clock.reset();
