@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "evaluation/frames/frame_account.h"
 #include "scenarios/loader.h"
 #include "tests/scratch_folder.h"
 
@@ -25,6 +26,7 @@ FitInput rig_of(const std::vector<std::uint32_t>& hosts, double period_ms = 1e3 
                                .sensor = from_ms(i * period_ms),
                                .arrival = from_ms(i * period_ms + (i % 3 == 0 ? 0.1 : 0))});
     }
+    stream.account = frame_account(stream.frames, /*counted=*/true);
     input.streams.push_back(std::move(stream));
   }
   return input;
