@@ -105,7 +105,7 @@ TEST_P(EveryServiceTest, ReportsOnceAndSurvivesLossDuplicatesAndReordering) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Services, EveryServiceTest, testing::ValuesIn(service_page()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& service) { return service.param.name; });
 
 TEST(ServiceAsymmetryTest, IsTheFloor) {
   std::vector<ServiceLimits> page = service_page();

@@ -79,7 +79,7 @@ TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
     const RecordingCost cost_with = record(&observed, with);
     EXPECT_TRUE(without.text == with.text);
     EXPECT_GT(with.text.size(), 10'000U);
-    EXPECT_EQ(with.text.find("\nalignment ") != std::string::npos,
+    EXPECT_EQ(with.text.find("\nalignment,") != std::string::npos,
               !choice.capture_alignment.empty());
     EXPECT_FALSE(observed.frames.empty());
     EXPECT_FALSE(observed.clocks.empty());

@@ -162,7 +162,7 @@ TEST_P(EveryPtpTest, TheProgramsStampsAreTakenWhereTheyAreAskedFor) {
 INSTANTIATE_TEST_SUITE_P(Forms, EveryPtpTest,
                          testing::Values(classic("EndToEnd", false), classic("PeerDelay", true),
                                          simple()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& service) { return service.param.name; });
 
 }  // namespace
 }  // namespace simbench
