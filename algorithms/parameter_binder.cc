@@ -97,7 +97,7 @@ std::string ParameterBinder::word_of(const std::string& name, std::vector<std::s
                                      const std::string& source) {
   if (values_ != nullptr) return values_->text(name);
   SIMBENCH_ASSERT(held < choices.size(), "a default has no word");
-  const std::string word = choices[held];
+  std::string word = choices[held];
   specs_.push_back({.name = name,
                     .fallback = word,
                     .choices = std::move(choices),

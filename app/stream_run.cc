@@ -73,6 +73,7 @@ Pipeline pipeline_named(const std::string& name) {
 
 std::vector<Pipeline> pipelines_of(const std::vector<std::string>& names) {
   std::vector<Pipeline> pipelines;
+  pipelines.reserve(names.size());
   for (const std::string& name : names) pipelines.push_back(pipeline_named(name));
   if (!names.empty()) return pipelines;
   for (const std::string& name : device_times_of_stamps()) {

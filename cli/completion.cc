@@ -112,9 +112,9 @@ namespace {
 
 // Escapes text within the brackets of an option's explanation, and between colons.
 std::string escaped(std::string text) {
-  text = replace_all_copy(std::move(text), "\\", "\\\\");
+  text = replace_all_copy(text, "\\", "\\\\");
   for (const char* special : {"[", "]", ":"}) {
-    text = replace_all_copy(std::move(text), special, std::string("\\") + special);
+    text = replace_all_copy(text, special, std::string("\\") + special);
   }
   return text;
 }

@@ -165,7 +165,7 @@ class Check {
       if (child != nullptr) walk(child_pointer(pointer, key), *child, member);
     }
     if (!node.contains("properties")) return;
-    if (node.value("additionalProperties", json()) == false) {
+    if (node.value("additionalProperties", json()) == json(false)) {
       for (const auto& [key, member] : value.items()) {
         if (!node["properties"].contains(key)) problems_.push_back(unknown_key(pointer, key, node));
       }

@@ -175,7 +175,7 @@ HeldInterrupt::~HeldInterrupt() {
 OutputFile::OutputFile(const std::string& path)
     : named_(path), path_(full_path(path)), temporary_([&] {
         clear_unfinished(path_);
-        const fs::path temporary = unfinished_path(path_, std::to_string(getpid()));
+        fs::path temporary = unfinished_path(path_, std::to_string(getpid()));
         errno = 0;
         std::ofstream file(temporary, std::ios::binary);
         if (!file) {
@@ -219,7 +219,7 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::vector<std::string
     fail_output(folder, fmt::format("there is no folder {}; make it first", parent.string()));
   }
   temporary_.emplace([&] {
-    const fs::path temporary = unfinished_path(folder_, std::to_string(getpid()));
+    fs::path temporary = unfinished_path(folder_, std::to_string(getpid()));
     fs::remove_all(temporary, error);  // of an earlier process with this one's number
     fs::create_directory(temporary, error);
     if (error) fail_output(folder, fmt::format("cannot be written: {}", error.message()));

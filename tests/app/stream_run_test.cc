@@ -93,7 +93,8 @@ TEST(StreamRun, GenlockOrderVerifiesWhereItIsStated) {
 TEST(StreamRun, ALostFrameLeavesItsSetOutAndIsCounted) {
   std::vector<RecordedStream> streams = two_cameras();
   streams[1].frames.erase(streams[1].frames.begin() + 100);
-  const SeedScore& score = score_of(scored(streams, {.pipelines = {"raw_arrival"}}), "raw_arrival");
+  const Results results = scored(streams, {.pipelines = {"raw_arrival"}});
+  const SeedScore& score = score_of(results, "raw_arrival");
   EXPECT_EQ(score.sets.emitted, 299);
   EXPECT_EQ(score.sets.discarded_frames, 1);
   EXPECT_EQ(score.frames.dropped, 1);
