@@ -25,8 +25,9 @@ bool schema_says(const char* keyword, std::string_view pointer) {
     const std::string key(pointer.substr(0, pointer.find('/')));
     pointer.remove_prefix(key.size());
     node = schema_of_child(*node, key);
-    if (node != nullptr && node->contains(keyword))
+    if (node != nullptr && node->contains(keyword)) {
       is_said = node->at(keyword) == ordered_json(true);
+    }
   }
   return node != nullptr && is_said;
 }
