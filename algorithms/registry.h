@@ -115,7 +115,8 @@ const std::vector<Entry>& algorithms();
 template <class Entry>
 const Entry* find_algorithm(const std::string& name);
 
-// The same for any stage: all in the same order, and one by name, null if there is none.
+// A stage that is known at run time has its algorithms here, in the same order; find_algorithm()
+// returns null if there is none of that name.
 std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage);
 const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name);
 

@@ -58,8 +58,8 @@ ArchiveFigures scenario_figures(const scenarios::Scenario& scenario, const Figur
                                 std::uint64_t over_seeds,
                                 const evaluation::Progress& progress = nullptr);
 
-// Those of a recording folder, whose captures stand in place of runs: without budgets, which need
-// other worlds. Throws also RecordingFailed.
+// Draws the figures of a recording, whose captures stand in place of runs: without budgets, which
+// need other worlds. Throws also RecordingFailed.
 ArchiveFigures recording_figures(const RecordedRun& run, const FigureOptions& options,
                                  const evaluation::Progress& progress = nullptr);
 
@@ -75,7 +75,7 @@ inline constexpr std::uint64_t kDefaultSeeds = 4;
 // about 3 MB of figures of 18 cameras.
 inline constexpr std::uint64_t kMostRuns = 32;
 
-// The same with every choice made, for one of `archives` that share the bounds.
+// Returns the detail with every choice made, for one of `archives` that share the bounds.
 ReportDetail bounded(const ReportDetail& detail, const reports::Archive& archive,
                      std::size_t archives);
 

@@ -31,7 +31,7 @@ bool is_ibl_recording(const std::string& path);
 // CsvError, "FILE:LINE: ..." or "FILE: row N: ...".
 std::vector<StampedFrame> read_ibl_recording(const std::string& path);
 
-// The same for the content of a *.frameData.bin.
+// Reads the content of a *.frameData.bin.
 std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std::string& path);
 
 // The CSV that recording/rs_csv.h reads.

@@ -47,7 +47,7 @@ std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> 
 
 // The simulator, interruptible: an evaluation::WorldFactory. `scenario` outlives the result.
 std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario);
-// The same of the hosts' clocks alone: an evaluation::ClockWorldFactory.
+// The simulator of the hosts' clocks alone, interruptible too: an evaluation::ClockWorldFactory.
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario);
 
 }  // namespace simbench::app

@@ -67,7 +67,7 @@ reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>&
   return reports::response_figure(plan, rows);
 }
 
-// Those of the tables, each once; the first is that of the first table.
+// Returns the figures of the tables, each once; the first is that of the first table.
 std::vector<reports::Figure> figures_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
                                         const std::vector<StudyTable>& tables) {
   std::vector<reports::Figure> figures;

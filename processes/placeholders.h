@@ -52,9 +52,9 @@ std::map<std::string, std::string> fill(std::map<std::string, std::string> envir
 std::string make_folder(const std::filesystem::path& folder,
                         const scenarios::HostPrograms& programs, const HostPlaces& places);
 
-// The first placeholder that there is none of.
+// Returns the first placeholder that there is none of.
 std::optional<std::string> unknown_placeholder(const std::string& text);
-// The same in all texts of the programs.
+// Looks in all texts of the programs.
 std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& programs);
 
 }  // namespace simbench::processes

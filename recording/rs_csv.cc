@@ -28,7 +28,7 @@ struct Unit {
 };
 constexpr std::array<Unit, 4> kUnits = {{{"ns", -6}, {"us", -3}, {"ms", 0}, {"s", 3}}};
 
-// Those of rs-data-collect.
+// Returns the columns that rs-data-collect writes.
 const RecordingColumns& usual_columns() {
   static const RecordingColumns columns{{{{"Stream Type"},
                                           {"Index"},

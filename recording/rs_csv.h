@@ -76,7 +76,7 @@ struct RecordingColumns {
 
 class CsvRecordingReader {
  public:
-  // Those of rs-data-collect.
+  // Reads the columns that rs-data-collect writes.
   CsvRecordingReader() = default;
   explicit CsvRecordingReader(RecordingColumns columns) : columns_(std::move(columns)) {}
 
@@ -84,7 +84,7 @@ class CsvRecordingReader {
   // unreadable, without a header or a frame, a line that is damaged.
   void read_file(const std::string& path, const std::string& name = {},
                  const ReadProgress& progress = {});
-  // The same from text, as if it were the content of `path`.
+  // Reads text as if it were the content of `path`.
   void read_text(std::string_view text, const std::string& path);
 
   // In order of first occurrence. The reader is empty afterwards.

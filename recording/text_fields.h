@@ -36,7 +36,7 @@ std::string quoted_bytes(std::string_view bytes);
 // A name that a terminal shows and does not obey: control characters, and what is no UTF-8, as
 // \xHH; the rest as it is.
 std::string printable_name(std::string_view name);
-// The same for text of several lines.
+// Keeps the line ends of text of several lines.
 std::string printable_lines(std::string_view text);
 
 template <std::integral Number>

@@ -286,7 +286,7 @@ std::vector<PlacedDocument> read_layers(Source source, std::vector<std::string> 
   return layers;
 }
 
-// Those that the scenario states or inherits; `files` led to it.
+// Returns the pipelines that the scenario states or inherits; `files` led to it.
 json pipelines_of(Source source, std::vector<std::string> files) {
   std::vector<PlacedDocument> layers = read_layers(std::move(source), std::move(files));
   while (!layers.empty() && !layers.back().root.contains("pipelines")) layers.pop_back();
@@ -379,7 +379,8 @@ void drop_outlived_results(const std::string& published, Resolved& resolved) {
   resolved.document[at] = std::move(kept);
 }
 
-// The same of figures. Those that are kept move up, and so do their places.
+// Drops the figures of pipelines that are gone. Figures that are kept move up, and so do their
+// places.
 void drop_outlived_figures(Resolved& resolved) {
   const auto found = resolved.document.find(kFigures);
   if (found == resolved.document.end()) return;

@@ -52,7 +52,7 @@ class Origin {
 Scenario load_scenario(const std::string& name_or_path,
                        const std::vector<Override>& overrides = {});
 
-// The same from text, as if it were the content of `file_name`; the fuzz target's way in.
+// Loads text as if it were the content of `file_name`; the fuzz target's way in.
 Scenario load_scenario_text(const std::string& text, const std::string& file_name,
                             const std::vector<Override>& overrides = {});
 

@@ -87,7 +87,7 @@ const Part* find_part(std::string_view name);
 
 // A part of the user's own. Throws InputError.
 Part load_part(const std::string& path);
-// The same from text, as if it were the content of `file_name`.
+// Loads text as if it were the content of `file_name`.
 Part load_part_text(const std::string& text, const std::string& file_name);
 
 }  // namespace simbench::scenarios

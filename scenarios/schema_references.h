@@ -29,7 +29,7 @@ void expand_references(Json& node, const Json& definitions) {
   for (Json& child : node) expand_references(child, definitions);
 }
 
-// The same for a whole schema, which then has no definitions.
+// Expands the references of a whole schema, which then has no definitions.
 template <class Json>
 void expand_references(Json& schema) {
   if (!schema.contains("definitions")) return;

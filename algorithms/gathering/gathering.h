@@ -56,7 +56,7 @@ class Gatherer {
  public:
   virtual ~Gatherer() = default;
   virtual void push(const GatherFrame& frame, FrameSetSink& sink) = 0;
-  // The same for each of a block of frames, in order.
+  // Pushes each of a block of frames, in order.
   virtual void push_all(std::span<const GatherFrame> frames, TimedSetSink& sink) {
     for (const GatherFrame& frame : frames) {
       sink.advance_to(frame.arrival);

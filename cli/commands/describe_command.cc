@@ -130,8 +130,8 @@ struct Described {
   const AlgorithmInfo* info;
 };
 
-// Those of a name, in all stages; else those of a family. A device_time may have the suffixes of
-// its variants.
+// Returns the algorithms of a name, in all stages; without any, those of a family. A device_time
+// may have the suffixes of its variants.
 std::vector<Described> algorithms_called(const std::string& name) {
   std::vector<Described> all;
   for (const StageInfo& stage : kPipelineStages) {

@@ -61,7 +61,7 @@ std::string scenarios_text() {
   return text;
 }
 
-// The same for scripts: one name a line.
+// Lists the names for scripts, one a line.
 std::string bare_names(const ListOptions& options) {
   std::vector<std::string> names;
   const auto add = [&names](const auto& list, const auto& name) {

@@ -42,7 +42,7 @@ struct Requirement {
 
 // Throws scenarios::InputError, whose message begins with "--require".
 Requirement parse_requirement(const std::string& text);
-// The same of several, separated by commas or given in turn; at least one.
+// Reads several, separated by commas or given in turn; returns at least one.
 std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts);
 
 }  // namespace simbench::evaluation

@@ -52,7 +52,7 @@ enum class RowStanding : std::uint8_t {
 RowStanding standing_of(const Row& row);
 // In tables: "", "reference" or "limit".
 const char* standing_name(RowStanding standing);
-// The same in an answer that ranks so.
+// Returns the standing in an answer that ranks so.
 RowStanding standing_by(const Row& row, RankedBy ranked_by);
 
 struct Answer {

@@ -48,7 +48,7 @@ struct FrameGap {
 // Frames in order of delivery, with stamps that are unwrapped (camera_statistics.h). `counted`:
 // RecordedStream::counted.
 FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted);
-// The same of a stream as recorded.
+// Unwraps the stamps of a stream as recorded, then accounts for its frames.
 FrameAccount frame_account(const RecordedStream& stream);
 
 // Gap i lies between frame i and frame i + 1.

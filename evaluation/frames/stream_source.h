@@ -38,7 +38,7 @@ class StreamSource final : public RecordingSource {
   // `streams` outlive this. `genlock`: GenLock order tells which pulses are evaluated.
   StreamSource(const std::vector<RecordedStream>& streams, const std::string& kind, bool genlock);
 
-  // Those of the kind that have frames; the camera of a frame is its place here.
+  // The streams of the kind that have frames. A frame's camera is the place of its stream here.
   const std::vector<const RecordedStream*>& streams() const { return streams_; }
   // The names of the hosts, by number.
   const std::vector<std::string>& hosts() const { return hosts_; }

@@ -111,7 +111,7 @@ struct RareEstimate {
 RareEstimate estimate_rare(const RareFunction& run, const SplittingOptions& options,
                            const Progress& progress);
 
-// The same by brute force, from `runs` unchanged runs (at least 2). The interval is Student's for
+// Estimates by brute force, from `runs` unchanged runs (at least 2). The interval is Student's for
 // the mean over runs, since the sets of a run are not independent; without any event its upper end
 // is that of a binomial over runs.
 RareEstimate count_rare(const RareFunction& run, std::uint64_t runs,

@@ -81,7 +81,7 @@ class EvaluationCancelled final : public EvaluationFailed {
 Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress);
 
-// The same of pipelines already chosen, possibly changed (PipelineChoice::view), in place of those
+// Evaluates pipelines already chosen, possibly changed (PipelineChoice::view), in place of those
 // that the options name.
 Results evaluate_choices(const scenarios::Scenario& scenario, std::vector<PipelineChoice> choices,
                          const SourceFactory& make_source, const EvaluationOptions& options,

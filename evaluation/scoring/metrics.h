@@ -226,8 +226,8 @@ const Metric& metric(std::string_view id, ResultKind kind = ResultKind::kCapture
 
 // The metrics with `judged`, in order: those of comparisons and gates.
 std::vector<const Metric*> judged_metrics(ResultKind kind = ResultKind::kCaptures);
-// Those that the rows are judged by: without metrics that archives may lack (is_new) and of which
-// no row has a value.
+// Returns the metrics that the rows are judged by: without those that archives may lack (is_new)
+// and of which no row has a value.
 std::vector<const Metric*> judged_metrics(ResultKind kind, std::span<const Row* const> rows);
 // The columns of a sweep, in their order: series and numbers, then counts.
 std::vector<const Metric*> sweep_metrics(ResultKind kind = ResultKind::kCaptures);

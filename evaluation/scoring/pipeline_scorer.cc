@@ -44,7 +44,8 @@ GatheringSetup gathering_of(const ScorerSetup& setup, const RigLayout& layout) {
                                                setup.gathering_interval_periods))};
 }
 
-// Those of a camera after the warm-up; a capture goes on a while after the last evaluated pulse.
+// Returns how many frames a camera may deliver after the warm-up: a capture goes on a while after
+// the last evaluated pulse.
 std::size_t expected_frames(const RigLayout& layout) {
   return static_cast<std::size_t>(layout.pulses + layout.pulses / 8);
 }

@@ -36,7 +36,8 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
 
 // Returns over how many seeds the row's median of a metric is: those that have a value.
 std::size_t scored_seeds(const Row& row, const Metric& metric);
-// The same for AMD; where no seed has one, for the metric with the most.
+// Returns over how many seeds the row has an AMD; where none has, over how many it has the metric
+// that most seeds have.
 std::size_t scored_seeds(const Row& row);
 
 // Whether the row has pulses but no AMD: those of a single camera.

@@ -75,7 +75,7 @@ struct ClockLog {
 };
 
 ClockLog read_clock_log(const std::string& path, const ClockLogOptions& options = {});
-// The same from text, as if it were the content of `path`.
+// Reads text as if it were the content of `path`.
 ClockLog parse_clock_log(std::string_view text, const std::string& path,
                          const ClockLogOptions& options = {});
 

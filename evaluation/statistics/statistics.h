@@ -36,7 +36,7 @@ Series make_series(std::vector<double> values);
 // the one at index (n - 1) * p ("type 7" of Hyndman and Fan 1996, the default of R and NumPy).
 // O(n).
 double quantile(std::vector<double> values, double p);
-// The same of values that all exist, in ascending order. O(1).
+// Needs values that all exist, in ascending order. O(1).
 double quantile_of_sorted(const std::vector<double>& sorted, double p);
 
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }

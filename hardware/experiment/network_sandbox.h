@@ -60,7 +60,7 @@ class NetworkSandbox {
   // In the hub: makes a pair to the process's namespace and sets the hub's side up. Removes the
   // pair of an earlier member of that number. Throws for a member that is not below kMaxMembers.
   static void connect(unsigned member, pid_t process);
-  // The same with the wire.
+  // Connects the member with the wire in the same way.
   static void connect_wire(unsigned member, pid_t process);
   // In the member's process, after connect(): sets its side up. False: it failed.
   static bool set_up_member(unsigned member);

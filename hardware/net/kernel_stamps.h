@@ -32,7 +32,7 @@ inline constexpr Nanoseconds kOldestStamp = std::chrono::seconds(10);
 
 // Asks for stamps of everything from now on. False if the kernel has none.
 bool request_kernel_stamps(int socket);
-// The same for received data only; nothing then fills the error queue.
+// Asks for stamps of received data only; nothing then fills the error queue.
 bool request_receive_stamps(int socket);
 // Starts the numbers of datagrams at 0 again: a send that failed may or may not have taken one.
 void restart_stamp_numbers(int socket);

@@ -71,7 +71,7 @@ struct Rig {
 };
 
 Rig load_rig(const std::string& path);
-// The same from text, as if it were the content of `path`.
+// Reads text as if it were the content of `path`.
 Rig load_rig_text(const std::string& text, const std::string& path);
 
 // The number of the host of this name. Throws InputError, which lists the known names.

@@ -41,7 +41,7 @@ struct Provenance {
 
 // Returns a command as a POSIX shell takes it.
 std::string shell_line(const std::vector<std::string>& words);
-// The same for an argv of simbench, without the path of the program.
+// Does so for an argv of simbench, without the path of the program.
 std::string simbench_line(std::vector<std::string> command);
 
 // Returns a manifest: schema_version, program, version, commit, command, started, finished (ISO

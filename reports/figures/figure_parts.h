@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostPoints = 600;
 
 // An empty figure with the id's title and place in the paper.
 Figure catalogued(std::string_view id);
-// The same for one run.
+// An empty figure that names one run.
 Figure of_run(std::string_view id, const evaluation::RunDetail& run);
 // The figure with nothing to draw, and the reason.
 Figure absent(Figure figure, std::string why);

@@ -18,7 +18,7 @@ namespace simbench::reports {
 // Fig. 9 and 10: the terms of AMD and RMDV of every pulse at one seed, for the paper's four rows,
 // or the first four of the results if these are missing. Needs read_seed_details().
 Figure frame_errors(const Archive& archive, std::uint64_t seed);
-// The same for all seeds of the archive, in order.
+// Returns a figure for each seed of the archive, in order.
 std::vector<Figure> frame_errors(const Archive& archive);
 
 // The scores of all seeds in ascending order over the share of seeds (the quantile function of the

@@ -27,7 +27,7 @@ bool can_run(const ReprojectionRow& row) {
   return evaluation::standing_of(choice) == RowStanding::kRunnable;
 }
 
-// Those that a rig can run and that have an error, the smallest first.
+// Returns the rows that a rig can run and that have an error, the smallest first.
 std::vector<const ReprojectionRow*> by_error(const std::vector<ReprojectionRow>& rows) {
   std::vector<const ReprojectionRow*> sorted;
   for (const ReprojectionRow& row : rows) {

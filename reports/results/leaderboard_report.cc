@@ -27,7 +27,7 @@ using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
 
-// Those of a board whose values are medians over the seeds.
+// Returns the metrics of a board whose values are medians over the seeds.
 std::vector<const evaluation::Metric*> board_metrics() {
   return {&evaluation::metric("absolute_error_ms"), &evaluation::metric("amd_ms"),
           &evaluation::metric("host_error_ms")};

@@ -334,7 +334,7 @@ void CameraWorld::deliver(HostSide& host, const Step& transferred) {
   ended_.push_back(step(stream.last_arrival, now, transferred.frame));
 }
 
-// Those that were delivered or lost before that.
+// Hands out the frames that were delivered or lost before that.
 void CameraWorld::hand_out_frames(TrueTime before, std::vector<SimFrame>& frames) {
   sort(ended_);
   const auto end = std::find_if(ended_.begin(), ended_.end(),

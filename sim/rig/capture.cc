@@ -161,7 +161,7 @@ void Capture::report_poll(const CameraPoll& poll) {
                 static_cast<std::uint32_t>(host));
 }
 
-// Those of this period until `last`, at least one.
+// Reports the frames of this period until `last`, at least one.
 void Capture::report_frames(TrueTime last) {
   const std::vector<SimFrame>& frames = period_->frames;
   const std::size_t first = frames_reported_;

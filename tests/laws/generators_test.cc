@@ -3,20 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <vector>
+#include "tests/first_draws.h"
 
 namespace simbench {
 namespace {
 
 using testing::ElementsAre;
-
-template <class Generator>
-std::vector<std::uint64_t> first_draws(Generator generator, int count) {
-  std::vector<std::uint64_t> draws;
-  draws.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) draws.push_back(generator());
-  return draws;
-}
 
 TEST(SplitMix64, GivesThePublishedValues) {
   EXPECT_THAT(first_draws(SplitMix64(1234567), 5),

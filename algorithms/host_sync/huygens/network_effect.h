@@ -46,8 +46,8 @@ std::vector<std::optional<double>> loop_corrected(const std::vector<PairLead>& p
 
 using PairLines = std::map<std::pair<PeerId, PeerId>, PairLine>;  // by (a, b), a < b
 
-// The same from lines, at time `x_ns` of host 0's raw clock. Lines are evaluated each at its own
-// clock's reading of that instant.
+// Corrects the leads that lines give at time `x_ns` of host 0's raw clock. Each line is evaluated
+// at its own clock's reading of that instant.
 std::vector<std::optional<std::int64_t>> loop_corrected_leads(const PairLines& lines,
                                                               std::int64_t x_ns, std::size_t hosts);
 

@@ -24,7 +24,7 @@ scenarios::Scenario small_scenario(const std::vector<scenarios::Override>& more 
 
 // A pipeline of small_scenario() and what it is called by.
 inline constexpr const char* kTestPipeline = "test";
-// The same with a capture_alignment.
+// Names the one with a capture_alignment.
 inline constexpr const char* kAlignedPipeline = "aligned";
 
 class TestRig {

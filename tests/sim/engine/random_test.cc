@@ -10,6 +10,8 @@
 #include <set>
 #include <vector>
 
+#include "tests/first_draws.h"
+
 namespace simbench::sim {
 namespace {
 
@@ -17,14 +19,6 @@ using testing::Each;
 using testing::ElementsAre;
 
 static_assert(std::uniform_random_bit_generator<RandomStream>);
-
-template <class Generator>
-std::vector<std::uint64_t> first_draws(Generator generator, int count) {
-  std::vector<std::uint64_t> draws;
-  draws.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) draws.push_back(generator());
-  return draws;
-}
 
 TEST(ComponentKey, IsFnv1a) {
   EXPECT_EQ(ComponentKey("").hash(), 0xCBF29CE484222325U);

@@ -66,7 +66,7 @@ std::uint64_t recording_hash(const KeptRecording& recording) {
   return hash;
 }
 
-// The same with the numbers that this build gives.
+// Returns the trace with the numbers that this build gives.
 Golden run_golden(const Golden& golden) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario(golden.scenario, brief(golden.scenario));
