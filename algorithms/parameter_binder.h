@@ -17,8 +17,7 @@
 //
 //   std::vector<ParameterSpec> specs = specs_of(FitSettings{.points = 8});
 //   FitSettings settings = settings_from<FitSettings>(check_parameters(specs, {}));
-#ifndef SIMBENCH_ALGORITHMS_PARAMETER_BINDER_H_
-#define SIMBENCH_ALGORITHMS_PARAMETER_BINDER_H_
+#pragma once
 
 #include <algorithm>
 #include <initializer_list>
@@ -114,5 +113,3 @@ Settings settings_from(const Parameters& parameters, Settings defaults = {}) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PARAMETER_BINDER_H_

@@ -9,8 +9,7 @@
 //       .low = 1, .high = 1e6, .choices = {}, .meaning = "n_d", .source = "assumption"}};
 //   Parameters parameters = check_parameters(specs, {{"stamps", 10.0}});
 //   parameters.number("stamps");   // 10
-#ifndef SIMBENCH_ALGORITHMS_PARAMETERS_H_
-#define SIMBENCH_ALGORITHMS_PARAMETERS_H_
+#pragma once
 
 #include <map>
 #include <stdexcept>
@@ -93,5 +92,3 @@ Parameters check_parameters(const std::vector<ParameterSpec>& specs, const Param
 inline constexpr const char* kAssumption = "assumption";
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PARAMETERS_H_

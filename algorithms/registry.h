@@ -15,8 +15,7 @@
 // stage; a second registration throws std::invalid_argument. Where definitions come again, as from
 // a cell of a notebook, replace_algorithm() takes the place of one that was registered from
 // outside.
-#ifndef SIMBENCH_ALGORITHMS_REGISTRY_H_
-#define SIMBENCH_ALGORITHMS_REGISTRY_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -121,5 +120,3 @@ std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage);
 const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_REGISTRY_H_

@@ -2,8 +2,7 @@
 // where that is affordable.
 //
 //   const reports::AnswerText first = run_answer(results, scenario, nullptr);
-#ifndef SIMBENCH_APP_ANSWER_H_
-#define SIMBENCH_APP_ANSWER_H_
+#pragma once
 
 #include "evaluation/answer/answer.h"
 #include "evaluation/run/evaluate.h"
@@ -24,5 +23,3 @@ reports::AnswerText run_answer(const evaluation::Results& results,
                                const evaluation::Progress& progress);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_ANSWER_H_

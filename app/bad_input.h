@@ -5,8 +5,7 @@
 //   } catch (const std::exception& error) {
 //     if (const auto text = bad_input(error)) fmt::print(stderr, "error: {}\n", *text);
 //   }
-#ifndef SIMBENCH_APP_BAD_INPUT_H_
-#define SIMBENCH_APP_BAD_INPUT_H_
+#pragma once
 
 #include <exception>
 #include <optional>
@@ -19,5 +18,3 @@ namespace simbench::app {
 std::optional<std::string> bad_input(const std::exception& error);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_BAD_INPUT_H_

@@ -8,7 +8,6 @@
 #include <optional>
 #include <tuple>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "algorithms/device_time/clock_map.h"

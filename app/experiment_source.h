@@ -25,8 +25,7 @@
 //
 //   ExperimentSource source(scenario, {.namespaces = !NetworkSandbox::enter()});
 //   source.record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = sync.get()}, scorer);
-#ifndef SIMBENCH_APP_EXPERIMENT_SOURCE_H_
-#define SIMBENCH_APP_EXPERIMENT_SOURCE_H_
+#pragma once
 
 #include <functional>
 #include <string>
@@ -81,5 +80,3 @@ struct ExperimentTruth {
 void add_truth(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_EXPERIMENT_SOURCE_H_

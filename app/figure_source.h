@@ -15,8 +15,7 @@
 //
 // Errors: scenarios::InputError (an unknown seed, pipeline or figure; a scenario that this version
 // does not take), RecordingCancelled, what the simulator throws.
-#ifndef SIMBENCH_APP_FIGURE_SOURCE_H_
-#define SIMBENCH_APP_FIGURE_SOURCE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -88,5 +87,3 @@ reports::ReportedArchive with_figures(reports::Archive archive, const ReportDeta
 std::string detail_note(const reports::Archive& archive, const ReportDetail& detail);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_FIGURE_SOURCE_H_

@@ -7,8 +7,7 @@
 //
 //   const FittedRanking ranking = ranking_of(scenario);
 //   evaluate(ranking.scenario, [&] { return simulated_world(ranking.scenario); }, {}, progress);
-#ifndef SIMBENCH_APP_FITTED_RANKING_H_
-#define SIMBENCH_APP_FITTED_RANKING_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -25,5 +24,3 @@ struct FittedRanking {
 FittedRanking ranking_of(const scenarios::Scenario& fitted);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_FITTED_RANKING_H_

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <bit>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -14,6 +13,7 @@
 
 #include "algorithms/device_time/unwrap.h"
 #include "recording/line_reader.h"
+#include "recording/number_in.h"
 #include "recording/rs_csv.h"
 #include "recording/text_fields.h"
 #include "scenarios/input_file.h"
@@ -53,20 +53,12 @@ class CycleClock {
   CounterUnwrapper<128 * kTicksPerSecond> unwrapper_;
 };
 
-template <class Number>
-std::optional<Number> whole(std::string_view text) {
-  Number value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 // "2020-08-19T12:42:57.7903616-04:00" as time since 1970 in UTC.
 std::optional<Nanoseconds> iso_time(std::string_view text) {
   using std::chrono::hours, std::chrono::minutes, std::chrono::seconds;
   if (text.size() != kIsoDigits + 6) return std::nullopt;
   const auto field = [&](std::size_t at, std::size_t size) {
-    return whole<unsigned>(text.substr(at, size));
+    return number_in<unsigned>(text.substr(at, size));
   };
   const auto year = field(0, 4), month = field(5, 2), day = field(8, 2);
   const auto hour = field(11, 2), minute = field(14, 2), second = field(17, 2);
@@ -105,7 +97,7 @@ class IblTimestamps {
     if (line.empty()) return;
     const std::size_t blank = std::min(line.find(' '), line.size());
     const auto arrival = iso_time(line.substr(0, blank));
-    const auto reading = whole<std::uint32_t>(line.substr(std::min(blank + 1, line.size())));
+    const auto reading = number_in<std::uint32_t>(line.substr(std::min(blank + 1, line.size())));
     const auto sensor = reading ? clock_.stamp(*reading) : std::nullopt;
     if (!arrival || !sensor) {
       throw CsvError(fmt::format(

@@ -12,8 +12,7 @@
 // returned here are unwrapped (half-range rule).
 //
 // Source: the README of the recordings; github.com/int-brain-lab/ibllib.
-#ifndef SIMBENCH_APP_IBL_RECORDING_H_
-#define SIMBENCH_APP_IBL_RECORDING_H_
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -38,5 +37,3 @@ std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std
 std::string rs_csv_text(const std::vector<StampedFrame>& frames);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_IBL_RECORDING_H_

@@ -2,8 +2,7 @@
 //
 //   const reports::Inspection found = inspected("rig.bag", {}, {"hull_300"});
 //   print(plain(reports::inspect_document({found})));
-#ifndef SIMBENCH_APP_INSPECTION_H_
-#define SIMBENCH_APP_INSPECTION_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -21,5 +20,3 @@ reports::Inspection inspected(const std::string& path, const bags::FileOptions& 
                               const ReadProgress& progress = {});
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_INSPECTION_H_

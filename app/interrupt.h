@@ -8,8 +8,7 @@
 // A second SIGINT raises another flag, on which cli/interrupt_deadline.h ends the program at once;
 // a third does so itself. A program that has signal handlers of its own raises the flag in their
 // place.
-#ifndef SIMBENCH_APP_INTERRUPT_H_
-#define SIMBENCH_APP_INTERRUPT_H_
+#pragma once
 
 #include <atomic>
 #include <csignal>
@@ -51,5 +50,3 @@ std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scen
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_INTERRUPT_H_

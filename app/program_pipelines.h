@@ -6,8 +6,7 @@
 //
 //   use_programs({.log_folder = "logs"});  // once, before running anything
 //   evaluation::evaluate(scenario, make_source, options, progress);
-#ifndef SIMBENCH_APP_PROGRAM_PIPELINES_H_
-#define SIMBENCH_APP_PROGRAM_PIPELINES_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -41,5 +40,3 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
 void use_programs(const ProgramFolders& options = {});
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_PROGRAM_PIPELINES_H_

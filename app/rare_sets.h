@@ -27,8 +27,7 @@
 //   const evaluation::RareFunction run =
 //       rare_sets(scenario, "chrony_lan", RareEvent::kSpread, 0.1);
 //   const auto estimate = evaluation::estimate_rare(run, {.bound = 0.1}, nullptr);
-#ifndef SIMBENCH_APP_RARE_SETS_H_
-#define SIMBENCH_APP_RARE_SETS_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -49,5 +48,3 @@ evaluation::RareFunction rare_sets(const scenarios::Scenario& scenario, const st
                                    RareEvent event, double bound_ms);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_RARE_SETS_H_

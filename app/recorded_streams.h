@@ -2,8 +2,7 @@
 //
 //   const RecordedStreams rig = recorded_streams({"front.bag", "back.csv"});
 //   const evaluation::Diagnosis diagnosis = evaluation::diagnose(rig.streams, {});
-#ifndef SIMBENCH_APP_RECORDED_STREAMS_H_
-#define SIMBENCH_APP_RECORDED_STREAMS_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -27,5 +26,3 @@ RecordedStreams recorded_streams(const std::vector<std::string>& inputs,
 std::optional<std::string> recording_folder_of(const std::vector<std::string>& inputs);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_RECORDED_STREAMS_H_

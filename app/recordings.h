@@ -14,8 +14,7 @@
 //
 //   const RecordedRun run("monday");
 //   const evaluation::Results results = run.evaluate(run.chosen({}), false, progress);
-#ifndef SIMBENCH_APP_RECORDINGS_H_
-#define SIMBENCH_APP_RECORDINGS_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -105,5 +104,3 @@ RecordedRun recorded_run(const std::vector<std::string>& inputs, const bags::Fil
 std::vector<std::string> capture_notes(const evaluation::Results& results);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_RECORDINGS_H_

@@ -4,8 +4,7 @@
 //   archive.open("results/monday");             // throws before the work, not after it
 //   const evaluation::Results results = evaluation::evaluate(scenario, make_source, {}, progress);
 //   archive.write(results, scenario);
-#ifndef SIMBENCH_APP_RESULTS_H_
-#define SIMBENCH_APP_RESULTS_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -53,5 +52,3 @@ SweepText write_sweep_results(const evaluation::SweepPlan& plan,
                               reports::SweepFolder& folder);
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_RESULTS_H_

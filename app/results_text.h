@@ -2,8 +2,7 @@
 //
 //   const reports::AnswerText answer = run_answer(results, scenario, nullptr);
 //   use(results_text(results, scenario, "table", Detail::kScreen, answer));
-#ifndef SIMBENCH_APP_RESULTS_TEXT_H_
-#define SIMBENCH_APP_RESULTS_TEXT_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -28,5 +27,3 @@ std::string results_text(const evaluation::Results& results, const scenarios::Sc
                          const std::vector<reports::Block>& more = {});
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_RESULTS_TEXT_H_

@@ -14,8 +14,7 @@
 //   evaluation::choose_pipelines(run.scenario(), {});
 //
 // Errors: scenarios::InputError, "--pipelines ...", "--stream ...".
-#ifndef SIMBENCH_APP_STREAM_RUN_H_
-#define SIMBENCH_APP_STREAM_RUN_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -69,5 +68,3 @@ std::vector<evaluation::StampedStream> stamped_streams(const std::vector<Recorde
 std::vector<std::string> device_times_of_stamps();
 
 }  // namespace simbench::app
-
-#endif  // SIMBENCH_APP_STREAM_RUN_H_

@@ -20,12 +20,10 @@
 //
 // Complexity: linear in the file for compressed chunks, else in the number of messages. Sources:
 // wiki.ros.org/Bags/Format/2.0, mcap.dev/spec, rosbag2_storage_sqlite3.
-#ifndef SIMBENCH_BAGS_BAG_H_
-#define SIMBENCH_BAGS_BAG_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -102,5 +100,3 @@ BagFacts read_mcap(const std::string& path, BagSink& sink, const ReadProgress& p
 BagFacts read_sqlite_bag(const std::string& path, BagSink& sink, const ReadProgress& progress);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_BAG_H_

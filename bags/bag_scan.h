@@ -16,11 +16,9 @@
 //
 // Memory: 80 bytes a frame while it reads, then 32. Source: docs/reference/bags.md
 // sections 2 and 3.
-#ifndef SIMBENCH_BAGS_BAG_SCAN_H_
-#define SIMBENCH_BAGS_BAG_SCAN_H_
+#pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,5 +65,3 @@ BagScan scan_bag(const std::string& path, const std::string& name, const ScanOpt
                  const ReadProgress& progress = {});
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_BAG_SCAN_H_

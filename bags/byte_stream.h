@@ -9,8 +9,7 @@
 //   const std::unique_ptr<ByteStream> plain = inflated(Compression::kLz4, chunk);
 //   plain->skip(100);
 //   if (!plain->read_exactly(buffer, 8)) ...    // the end came first
-#ifndef SIMBENCH_BAGS_BYTE_STREAM_H_
-#define SIMBENCH_BAGS_BYTE_STREAM_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -96,5 +95,3 @@ enum class Compression : std::uint8_t { kLz4, kZstd, kBzip2 };
 std::unique_ptr<ByteStream> inflated(Compression compression, ByteStream& compressed);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_BYTE_STREAM_H_

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <utility>
 #include <vector>
 
 namespace simbench::bags {

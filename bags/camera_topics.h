@@ -10,8 +10,7 @@
 //
 //   const CameraTopic topic = camera_topic(bag_topic);
 //   if (topic.kind == TopicKind::kImage) use(camera_of(topic.base).camera);
-#ifndef SIMBENCH_BAGS_CAMERA_TOPICS_H_
-#define SIMBENCH_BAGS_CAMERA_TOPICS_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -51,5 +50,3 @@ NamedStream camera_of(const CameraTopic& topic);
 bool is_derived(std::string_view base);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_CAMERA_TOPICS_H_

@@ -3,8 +3,7 @@
 //   DamageNotes notes("rig.bag");
 //   notes.add(4096, "the chunk does not inflate");   // "rig.bag: at byte 4096: the chunk ..."
 //   facts.notes = notes.take();
-#ifndef SIMBENCH_BAGS_DAMAGE_NOTES_H_
-#define SIMBENCH_BAGS_DAMAGE_NOTES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -41,5 +40,3 @@ class DamageNotes {
 };
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_DAMAGE_NOTES_H_

@@ -1,7 +1,5 @@
 #include "bags/fields.h"
 
-#include <algorithm>
-
 namespace simbench::bags {
 namespace {
 

@@ -7,8 +7,7 @@
 //   FieldBytes fields(message.head, Encoding::kCdr);
 //   const MessageHeader header = read_header(fields);
 //   if (!fields.ok()) ...
-#ifndef SIMBENCH_BAGS_FIELDS_H_
-#define SIMBENCH_BAGS_FIELDS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -57,5 +56,3 @@ MessageHeader read_header(FieldBytes& fields);
 std::string ros1_type(std::string name);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_FIELDS_H_

@@ -1,8 +1,7 @@
 // The frames of one topic (and frame id) as a bag has them, before one source of stamps is chosen
 // for all. Stamps are in the unit of their names; kNoStamp where the bag has none. Source:
 // docs/reference/bags.md sections 2 and 3.
-#ifndef SIMBENCH_BAGS_FRAME_TRACK_H_
-#define SIMBENCH_BAGS_FRAME_TRACK_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -53,5 +52,3 @@ bool make_stream(const FrameTrack& track, const std::string& place, RecordedStre
                  std::vector<std::string>& notes);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_FRAME_TRACK_H_

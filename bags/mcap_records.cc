@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/crc.hpp>
-#include <cstring>
 #include <vector>
 
 #include "bags/fields.h"

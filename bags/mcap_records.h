@@ -7,8 +7,7 @@
 //   McapChannels channels;
 //   const McapSummary summary = read_mcap_summary(file, channels);
 //   if (summary.messages) ...
-#ifndef SIMBENCH_BAGS_MCAP_RECORDS_H_
-#define SIMBENCH_BAGS_MCAP_RECORDS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -97,5 +96,3 @@ struct McapSummary {
 McapSummary read_mcap_summary(FileBytes& file, McapChannels& channels);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_MCAP_RECORDS_H_

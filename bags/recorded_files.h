@@ -9,8 +9,7 @@
 //   const RecordedStreams rig = bags::read_recorded_files({"front.bag", "back.mcap"}, {});
 //
 // Errors: BagError, CsvError; each names the file.
-#ifndef SIMBENCH_BAGS_RECORDED_FILES_H_
-#define SIMBENCH_BAGS_RECORDED_FILES_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -38,5 +37,3 @@ RecordedStreams read_recorded_files(const std::vector<std::string>& files,
                                     const FileOptions& options, const ReadProgress& progress = {});
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_RECORDED_FILES_H_

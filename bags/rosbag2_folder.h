@@ -4,13 +4,10 @@
 //
 // Errors: BagError for a folder without bags, and for files that rosbag2 compressed whole.
 // Source: rosbag2's metadata.yaml, relative_file_paths.
-#ifndef SIMBENCH_BAGS_ROSBAG2_FOLDER_H_
-#define SIMBENCH_BAGS_ROSBAG2_FOLDER_H_
+#pragma once
 
 #include <string>
 #include <vector>
-
-#include "bags/bag.h"
 
 namespace simbench::bags {
 
@@ -22,5 +19,3 @@ bool is_rosbag2_folder(const std::string& folder);
 std::vector<std::string> rosbag2_files(const std::string& folder);
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_ROSBAG2_FOLDER_H_

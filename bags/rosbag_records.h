@@ -5,8 +5,7 @@
 //
 //   RecordHeader header;
 //   while (header.read(stream)) use(header.op(), header.data_size());
-#ifndef SIMBENCH_BAGS_ROSBAG_RECORDS_H_
-#define SIMBENCH_BAGS_ROSBAG_RECORDS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -61,5 +60,3 @@ class RecordHeader {
 };
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_BAGS_ROSBAG_RECORDS_H_

@@ -8,8 +8,7 @@
 // A stamp's error is taken against exposure + D, since no one-way method can know D; a two-way
 // method is D early by that measure.
 // Source: docs/reference/device_time.md section 3.
-#ifndef SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_
-#define SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_
+#pragma once
 
 #include <algorithm>
 #include <boost/random/exponential_distribution.hpp>
@@ -159,5 +158,3 @@ inline DeviceTimeErrors device_time_errors(const DeviceTimeRun& run,
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_

@@ -15,8 +15,7 @@
 // (value_kind() in cli/command_table.cc): SCENARIO, DIR, ARCHIVE and others, else a file. Help
 // lists options in the order in which they are added. The variable of an option must live as long
 // as the action; its value is the default, which the text states ("Default: 32").
-#ifndef SIMBENCH_CLI_COMMAND_H_
-#define SIMBENCH_CLI_COMMAND_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -25,7 +24,6 @@
 #include <vector>
 
 #include "algorithms/ports/stage.h"
-#include "cli/messages.h"
 #include "scenarios/loader.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the parser calls it so
@@ -141,5 +139,3 @@ std::vector<std::string> allowed_words(CLI::Option& option);
 bool takes_number(CLI::Option& option);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_COMMAND_H_

@@ -11,8 +11,7 @@
 // Standard output carries the result and nothing else; messages go to standard error. Never throws;
 // returns the exit status (cli/messages.h). One call per process: it handles SIGINT while it
 // runs.
-#ifndef SIMBENCH_CLI_COMMAND_LINE_H_
-#define SIMBENCH_CLI_COMMAND_LINE_H_
+#pragma once
 
 #include <string>
 
@@ -41,5 +40,3 @@ struct CommandLineExtras {
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras = {});
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_CLI_COMMAND_LINE_H_

@@ -1,8 +1,7 @@
 // The commands and options of simbench as data, read from the parser (CLI::App), and the texts made
 // of them: completion scripts and man pages. A command that is added to the parser is in all of
 // them.
-#ifndef SIMBENCH_CLI_COMMAND_TABLE_H_
-#define SIMBENCH_CLI_COMMAND_TABLE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -86,5 +85,3 @@ std::string manual_page(const CommandTable& table);
 std::string manual_page(const CommandTable& table, const CommandEntry& command);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_COMMAND_TABLE_H_

@@ -1,8 +1,7 @@
 // The completion scripts of cli/completion/, embedded by the build (cli/embed_completion.cmake):
 // templates of reports/text/escaped_text.h, in which {{NAME}} stands for what follows from the
 // commands.
-#ifndef SIMBENCH_CLI_COMPLETION_SCRIPTS_H_
-#define SIMBENCH_CLI_COMPLETION_SCRIPTS_H_
+#pragma once
 
 #include <string_view>
 
@@ -13,5 +12,3 @@ std::string_view zsh_script();
 std::string_view fish_script();
 
 }  // namespace simbench::cli::completion
-
-#endif  // SIMBENCH_CLI_COMPLETION_SCRIPTS_H_

@@ -1,7 +1,6 @@
 // The text of --help, and the messages about a command line that cannot be parsed: what was found,
 // what is allowed, and where to read more.
-#ifndef SIMBENCH_CLI_HELP_H_
-#define SIMBENCH_CLI_HELP_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -43,5 +42,3 @@ std::string unknown_command(CLI::App& app, const std::string& word);
 std::string usage_error(CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_HELP_H_

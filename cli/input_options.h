@@ -3,8 +3,7 @@
 //   InputOptions inputs;
 //   add_input_options(command, inputs);
 //   const RecordedStreams rig = app::recorded_streams({"rig.bag"}, file_options(inputs));
-#ifndef SIMBENCH_CLI_INPUT_OPTIONS_H_
-#define SIMBENCH_CLI_INPUT_OPTIONS_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -36,5 +35,3 @@ std::optional<RecordedStreams> read_inputs(const std::vector<std::string>& input
                                            const InputOptions& options);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_INPUT_OPTIONS_H_

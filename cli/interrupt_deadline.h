@@ -13,8 +13,7 @@
 //     const InterruptDeadline deadline([] { print_note("interrupted"); });
 //     use();
 //   }
-#ifndef SIMBENCH_CLI_INTERRUPT_DEADLINE_H_
-#define SIMBENCH_CLI_INTERRUPT_DEADLINE_H_
+#pragma once
 
 #include <condition_variable>
 #include <cstdint>
@@ -48,5 +47,3 @@ class InterruptDeadline {
 };
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_INTERRUPT_DEADLINE_H_

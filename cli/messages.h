@@ -11,8 +11,7 @@
 // (reports/text/program_name.h).
 //
 // Not thread-safe; one setting for the process.
-#ifndef SIMBENCH_CLI_MESSAGES_H_
-#define SIMBENCH_CLI_MESSAGES_H_
+#pragma once
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
@@ -69,5 +68,3 @@ bool wants_colour();
 bool colours_output();
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_MESSAGES_H_

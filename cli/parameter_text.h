@@ -5,8 +5,7 @@
 //       .meaning = "of the fit", .source = "assumption"};
 //   default_text(spec);  // "16"
 //   range_text(spec);    // "1 to 100"
-#ifndef SIMBENCH_CLI_PARAMETER_TEXT_H_
-#define SIMBENCH_CLI_PARAMETER_TEXT_H_
+#pragma once
 
 #include <string>
 
@@ -20,5 +19,3 @@ std::string default_text(const ParameterSpec& spec);
 std::string range_text(const ParameterSpec& spec);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_PARAMETER_TEXT_H_

@@ -4,8 +4,7 @@
 // more libraries, which only their users need. `mpirun -n 64 simbench sweep ...` goes on as
 // simbench-mpi, `simbench reconstruct` as simbench-reconstruct. `simbench run --python FILE ...`
 // goes on as the interpreter of Python with the package simbench, which has the command line in it.
-#ifndef SIMBENCH_CLI_PROCESS_H_
-#define SIMBENCH_CLI_PROCESS_H_
+#pragma once
 
 #include <filesystem>
 #include <optional>
@@ -48,5 +47,3 @@ std::optional<long> mpi_rank();
 void become_mpi_program(const std::vector<std::string>& arguments);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_PROCESS_H_

@@ -4,8 +4,7 @@
 //   add_program_options(command, programs);
 //   std::vector<std::string> pipelines = {"chrony"};
 //   const scenarios::Scenario star = load_with_programs("6host_star", {}, programs, pipelines);
-#ifndef SIMBENCH_CLI_PROGRAM_OPTIONS_H_
-#define SIMBENCH_CLI_PROGRAM_OPTIONS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -34,5 +33,3 @@ scenarios::Scenario load_with_programs(const std::string& scenario,
                                        evaluation::AdHoc ad_hoc = evaluation::AdHoc::kAllStages);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_PROGRAM_OPTIONS_H_

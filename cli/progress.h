@@ -20,8 +20,7 @@
 //   progress.finish();
 //
 // Not thread-safe: one call at a time.
-#ifndef SIMBENCH_CLI_PROGRESS_H_
-#define SIMBENCH_CLI_PROGRESS_H_
+#pragma once
 
 #include <chrono>
 #include <cstdint>
@@ -147,5 +146,3 @@ std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
 }
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_PROGRESS_H_

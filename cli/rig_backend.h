@@ -4,8 +4,7 @@
 //   BackendOptions backend;
 //   add_backend_options(command, backend);
 //   if (is_hardware(backend)) source = make_rig_source(backend, scenario);
-#ifndef SIMBENCH_CLI_RIG_BACKEND_H_
-#define SIMBENCH_CLI_RIG_BACKEND_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -14,7 +13,6 @@
 #include "hardware/conductor/rig_source.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/rig/rig.h"
-#include "recording/recording.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::cli {
@@ -42,5 +40,3 @@ std::unique_ptr<hardware::RigSource> make_rig_source(const BackendOptions& optio
                                                      const scenarios::Scenario& scenario);
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_RIG_BACKEND_H_

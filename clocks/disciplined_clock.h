@@ -33,8 +33,7 @@
 //   DisciplinedClock<hardware::NodeOscillator> clock(3, oscillator, now, os_time, 64);
 //   clock.slew(now, from_ms(2), 500'000);  // 2 ms at 500 ppm: takes 4 s
 //   HostTime reading = clock.read(kernel_stamp);
-#ifndef SIMBENCH_CLOCKS_DISCIPLINED_CLOCK_H_
-#define SIMBENCH_CLOCKS_DISCIPLINED_CLOCK_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -441,5 +440,3 @@ ClockAdjustment DisciplinedClock<O>::present(Instant now) const {
 }
 
 }  // namespace simbench::clocks
-
-#endif  // SIMBENCH_CLOCKS_DISCIPLINED_CLOCK_H_

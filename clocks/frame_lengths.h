@@ -24,8 +24,7 @@
 //   const auto kind = FrameControlKind::kAdjustFrame;
 //   lengths.set(kind, lengths.wanted(kind, from_ms(-2), 7), 7);
 //   const Nanoseconds made = lengths.of(7);  // 31 ms
-#ifndef SIMBENCH_CLOCKS_FRAME_LENGTHS_H_
-#define SIMBENCH_CLOCKS_FRAME_LENGTHS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -78,5 +77,3 @@ class FrameLengths {
 };
 
 }  // namespace simbench::clocks
-
-#endif  // SIMBENCH_CLOCKS_FRAME_LENGTHS_H_

@@ -35,8 +35,7 @@
 //     request.freq = 65536 * 12;  // 12 ppm
 //     if (KernelDiscipline::refusal(request) == 0) kernel.apply(request, steered);
 //   }
-#ifndef SIMBENCH_CLOCKS_KERNEL_DISCIPLINE_H_
-#define SIMBENCH_CLOCKS_KERNEL_DISCIPLINE_H_
+#pragma once
 
 #include <sys/timex.h>
 
@@ -114,5 +113,3 @@ class KernelDiscipline {
 };
 
 }  // namespace simbench::clocks
-
-#endif  // SIMBENCH_CLOCKS_KERNEL_DISCIPLINE_H_

@@ -3,8 +3,7 @@
 // wait for each. A hint: it changes no result, and the address need not be valid.
 //
 //   prefetch(&clock, 128);
-#ifndef SIMBENCH_CLOCKS_PREFETCH_H_
-#define SIMBENCH_CLOCKS_PREFETCH_H_
+#pragma once
 
 #include <cstddef>
 
@@ -18,5 +17,3 @@ inline void prefetch(const void* address, std::size_t bytes) {
 }
 
 }  // namespace simbench::clocks
-
-#endif  // SIMBENCH_CLOCKS_PREFETCH_H_

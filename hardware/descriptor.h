@@ -2,8 +2,7 @@
 //
 //   const Descriptor file(open("rig.key", O_RDONLY | O_CLOEXEC));
 //   if (file.good()) use(file.read_at(0, 66));
-#ifndef SIMBENCH_HARDWARE_DESCRIPTOR_H_
-#define SIMBENCH_HARDWARE_DESCRIPTOR_H_
+#pragma once
 
 #include <unistd.h>
 
@@ -65,5 +64,3 @@ class Descriptor {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_DESCRIPTOR_H_

@@ -1,8 +1,7 @@
 // A text as one word of a command for /bin/sh, and for the shells that quote like it.
 //
 //   shell_quoted("it's");
-#ifndef SIMBENCH_HARDWARE_SHELL_QUOTED_H_
-#define SIMBENCH_HARDWARE_SHELL_QUOTED_H_
+#pragma once
 
 #include <string>
 
@@ -15,5 +14,3 @@ inline std::string shell_quoted(const std::string& text) {
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_SHELL_QUOTED_H_

@@ -12,8 +12,7 @@
 //
 //   SplitMix64 generator(7);
 //   const double share = unit_share(generator());
-#ifndef SIMBENCH_LAWS_GENERATORS_H_
-#define SIMBENCH_LAWS_GENERATORS_H_
+#pragma once
 
 #include <array>
 #include <bit>
@@ -72,5 +71,3 @@ constexpr double unit_share(std::uint64_t word) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_GENERATORS_H_

@@ -14,8 +14,7 @@
 //   sums.add({.x = 0, .y = 5});
 //   sums.add({.x = 10, .y = 7});
 //   sums.line().at(20);   // 9
-#ifndef SIMBENCH_LAWS_LINE_FIT_H_
-#define SIMBENCH_LAWS_LINE_FIT_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -191,5 +190,3 @@ class LineWindow {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_LINE_FIT_H_

@@ -23,8 +23,7 @@
 //   hull.add({.x = 0, .y = 3}); hull.add({.x = 2, .y = 9}); hull.add({.x = 4, .y = 5});
 //   support_line(hull.vertices(), hull.vertices().front().x + hull.vertices().back().x).at(4);
 //   // 5
-#ifndef SIMBENCH_LAWS_LOWER_HULL_H_
-#define SIMBENCH_LAWS_LOWER_HULL_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -257,5 +256,3 @@ inline bool is_vertex(const Envelope::Point& a, const Envelope::Point& b,
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_LOWER_HULL_H_

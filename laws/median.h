@@ -2,8 +2,7 @@
 //
 //   std::vector<double> values = ...;
 //   double middle = median_in_place(values);
-#ifndef SIMBENCH_LAWS_MEDIAN_H_
-#define SIMBENCH_LAWS_MEDIAN_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -23,5 +22,3 @@ inline double median_in_place(std::span<double> values) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_MEDIAN_H_

@@ -19,8 +19,7 @@
 //   const LatencyLaw latency{.fixed_ms = 0.2, .exponential_ms = 0.05};
 //   const double one_way_ms = latency.draw_ms(draws);
 //   const DatagramFate fate = DatagramLaw{.loss_probability = 0.01}.draw(draws);
-#ifndef SIMBENCH_LAWS_MESSAGE_LAW_H_
-#define SIMBENCH_LAWS_MESSAGE_LAW_H_
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -98,5 +97,3 @@ struct DatagramLaw {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_MESSAGE_LAW_H_

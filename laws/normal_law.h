@@ -2,8 +2,7 @@
 //
 //   normal_probability(0);  // 0.5: half of all values are below the mean
 //   normal_density(0);      // 0.3989
-#ifndef SIMBENCH_LAWS_NORMAL_LAW_H_
-#define SIMBENCH_LAWS_NORMAL_LAW_H_
+#pragma once
 
 #include <cmath>
 #include <numbers>
@@ -18,5 +17,3 @@ inline double normal_density(double z) {
 inline double normal_probability(double z) { return std::erfc(-z / std::numbers::sqrt2) / 2; }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_NORMAL_LAW_H_

@@ -9,8 +9,7 @@
 //
 //   const QuantileTable delay_ms(scenario.usb.delivery_quantiles_ms);
 //   double ms = delay_ms.value_at(0.999);
-#ifndef SIMBENCH_LAWS_QUANTILE_TABLE_H_
-#define SIMBENCH_LAWS_QUANTILE_TABLE_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -40,5 +39,3 @@ class QuantileTable {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_QUANTILE_TABLE_H_

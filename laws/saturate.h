@@ -3,8 +3,7 @@
 // Stamps of a real recording may be anything, and the difference of two need not fit 64 bits. A
 // result beyond the range becomes the end of the range. Nearly all results fit 64 bits: the way of
 // the others is out of line, which leaves the registers to the common one.
-#ifndef SIMBENCH_LAWS_SATURATE_H_
-#define SIMBENCH_LAWS_SATURATE_H_
+#pragma once
 
 #include <algorithm>
 #include <bit>
@@ -48,5 +47,3 @@ inline std::int64_t saturate_round(double value) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_SATURATE_H_

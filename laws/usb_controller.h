@@ -22,8 +22,7 @@
 //
 // Complexity: O(log n) per frame, n frames pending on the controller. Source:
 // docs/reference/d455.md section 3, docs/design.md section 7.
-#ifndef SIMBENCH_LAWS_USB_CONTROLLER_H_
-#define SIMBENCH_LAWS_USB_CONTROLLER_H_
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -106,5 +105,3 @@ class UsbController {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_LAWS_USB_CONTROLLER_H_

@@ -8,8 +8,7 @@
 //   const sock_fprog ready{static_cast<unsigned short>(filter.size()), filter.data()};
 //
 // Source: seccomp(2), bpf(4).
-#ifndef SIMBENCH_PROCESSES_CALL_FILTER_H_
-#define SIMBENCH_PROCESSES_CALL_FILTER_H_
+#pragma once
 
 #include <linux/filter.h>
 
@@ -33,5 +32,3 @@ inline constexpr std::uint32_t kOwnProcess = 0x7FFFFFFE;
 void set_own_process(std::span<sock_filter> filter, std::uint32_t process);
 
 }  // namespace simbench::processes
-
-#endif  // SIMBENCH_PROCESSES_CALL_FILTER_H_

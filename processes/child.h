@@ -26,8 +26,7 @@
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
 //   print(child.ending());  // "chronyd: exited with status 1: Could not open configuration file"
-#ifndef SIMBENCH_PROCESSES_CHILD_H_
-#define SIMBENCH_PROCESSES_CHILD_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -109,5 +108,3 @@ class Child {
 };
 
 }  // namespace simbench::processes
-
-#endif  // SIMBENCH_PROCESSES_CHILD_H_

@@ -32,8 +32,7 @@
 //   }
 //
 // Source: capabilities(7), landlock(7), seccomp(2), Documentation/userspace-api/landlock.rst.
-#ifndef SIMBENCH_PROCESSES_CONFINEMENT_H_
-#define SIMBENCH_PROCESSES_CONFINEMENT_H_
+#pragma once
 
 #include <linux/filter.h>
 
@@ -73,5 +72,3 @@ class Confinement {
 };
 
 }  // namespace simbench::processes
-
-#endif  // SIMBENCH_PROCESSES_CONFINEMENT_H_

@@ -15,8 +15,7 @@
 //
 //   fill("server {master} iburst", {.host = 3});  // "server 10.0.0.1 iburst"
 //   unknown_placeholder("server {mastr}");        // "{mastr}"
-#ifndef SIMBENCH_PROCESSES_PLACEHOLDERS_H_
-#define SIMBENCH_PROCESSES_PLACEHOLDERS_H_
+#pragma once
 
 #include <cstdint>
 #include <filesystem>
@@ -58,5 +57,3 @@ std::optional<std::string> unknown_placeholder(const std::string& text);
 std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& programs);
 
 }  // namespace simbench::processes
-
-#endif  // SIMBENCH_PROCESSES_PLACEHOLDERS_H_

@@ -3,8 +3,7 @@
 //
 //   const auto wanted = read_head<shim::TimerSetting>(request.data);
 //   answer.data = bytes_of(wanted);
-#ifndef SIMBENCH_PROCESSES_REQUESTS_H_
-#define SIMBENCH_PROCESSES_REQUESTS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstring>
@@ -38,5 +37,3 @@ T read_head(const Bytes& data) {
 }
 
 }  // namespace simbench::processes
-
-#endif  // SIMBENCH_PROCESSES_REQUESTS_H_

@@ -10,8 +10,7 @@
 //   const Pinhole camera = centred_pinhole(848, 480, 430.0);
 //   const Eigen::Vector2d pixel = camera.pixel_of(point);          // point.z() > 0
 //   const Eigen::Vector3d again = camera.point_at(pixel, point.z());
-#ifndef SIMBENCH_RECONSTRUCTION_DEPTH_MAP_H_
-#define SIMBENCH_RECONSTRUCTION_DEPTH_MAP_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -68,5 +67,3 @@ inline Pinhole centred_pinhole(int width, int height, double focal_px) {
 }
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_DEPTH_MAP_H_

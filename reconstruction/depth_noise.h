@@ -17,8 +17,7 @@
 // Draws depend on (seed, camera, frame) only, so one frame looks the same to every pipeline.
 //
 // Source: docs/reference/calibration.md section 6; the law: triangulation (z = f B / disparity).
-#ifndef SIMBENCH_RECONSTRUCTION_DEPTH_NOISE_H_
-#define SIMBENCH_RECONSTRUCTION_DEPTH_NOISE_H_
+#pragma once
 
 #include <cstdint>
 
@@ -37,5 +36,3 @@ DepthMap measured_depth(const SeenDepth& seen, const scenarios::Studio& studio, 
                         const NoiseKey& key);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_DEPTH_NOISE_H_

@@ -4,8 +4,7 @@
 // Cameras of one host expose together. Hosts are spread over `desync_ms`: the earliest and the
 // latest are exactly that far apart, the others are uniform between them. The seed draws the hosts'
 // places, the same for every desynchronisation, so that points of a curve are paired.
-#ifndef SIMBENCH_RECONSTRUCTION_DESYNC_PATTERN_H_
-#define SIMBENCH_RECONSTRUCTION_DESYNC_PATTERN_H_
+#pragma once
 
 #include <cstdint>
 
@@ -20,5 +19,3 @@ evaluation::ExposureSet desynchronised_set(const scenarios::Scenario& scenario, 
                                            double desync_ms, double at_s, std::uint32_t index);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_DESYNC_PATTERN_H_

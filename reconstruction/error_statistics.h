@@ -11,8 +11,7 @@
 //   SeedTally tally;
 //   tally.add(set, reconstructed, errors_of_the_set);   // each set
 //   row.seeds.push_back(tally.finish(seed, gathered));
-#ifndef SIMBENCH_RECONSTRUCTION_ERROR_STATISTICS_H_
-#define SIMBENCH_RECONSTRUCTION_ERROR_STATISTICS_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -56,5 +55,3 @@ class SeedTally {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_ERROR_STATISTICS_H_

@@ -15,8 +15,7 @@
 //
 //   const ReconstructionResults results = run_reconstruction(
 //       scenario, make_simulated, options, on_mesh, progress);
-#ifndef SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
-#define SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -84,5 +83,3 @@ struct Reconstruction {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_

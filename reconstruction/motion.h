@@ -27,8 +27,7 @@
 //
 // Source: the paper states only "moving person"; the scripts are those of the reconstruction
 // study (docs/reference/calibration.md section 6), gait figures are common ones (stride 1.4 m).
-#ifndef SIMBENCH_RECONSTRUCTION_MOTION_H_
-#define SIMBENCH_RECONSTRUCTION_MOTION_H_
+#pragma once
 
 #include <Eigen/Geometry>
 
@@ -67,5 +66,3 @@ class Motion {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_MOTION_H_

@@ -5,8 +5,7 @@
 // capsule's length may be 0); std::invalid_argument if one is not.
 //
 //   const TriangleMesh head = make_ellipsoid({0.10, 0.08, 0.12}, /*largest_error_m=*/0.001);
-#ifndef SIMBENCH_RECONSTRUCTION_PRIMITIVES_H_
-#define SIMBENCH_RECONSTRUCTION_PRIMITIVES_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -22,5 +21,3 @@ TriangleMesh make_tapered_capsule(double radius_m, double end_radius_m, double l
                                   double largest_error_m);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_PRIMITIVES_H_

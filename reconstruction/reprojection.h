@@ -17,8 +17,7 @@
 //   VertexErrors painted(mesh.vertices.size());
 //   add_reprojection_errors(mesh, zbuffer, measured, camera, {.tolerance_m = 0.05, .spread_px = 2},
 //                           errors, painted);
-#ifndef SIMBENCH_RECONSTRUCTION_REPROJECTION_H_
-#define SIMBENCH_RECONSTRUCTION_REPROJECTION_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -67,5 +66,3 @@ Eigen::Vector3f error_colour(double error_m);
 std::vector<Eigen::Vector3f> error_colours(const VertexErrors& errors);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_REPROJECTION_H_

@@ -8,8 +8,7 @@
 // could be reconstructed) has NaN.
 //
 // Units: cm for errors, ms for times. Source: section 4.4 of the paper, Table 4.
-#ifndef SIMBENCH_RECONSTRUCTION_RESULTS_H_
-#define SIMBENCH_RECONSTRUCTION_RESULTS_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -95,5 +94,3 @@ struct ReconstructionResults {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_RESULTS_H_

@@ -10,8 +10,7 @@
 //
 // Source of the lengths: Drillis and Contini 1966, as in Winter, Biomechanics and Motor Control of
 // Human Movement, figure 4.1.
-#ifndef SIMBENCH_RECONSTRUCTION_SKELETON_H_
-#define SIMBENCH_RECONSTRUCTION_SKELETON_H_
+#pragma once
 
 #include <Eigen/Geometry>
 #include <array>
@@ -52,5 +51,3 @@ using SegmentPoses = std::array<Eigen::Isometry3d, kSegments>;
 SegmentPoses segment_poses(const Posture& posture, double height_m);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_SKELETON_H_

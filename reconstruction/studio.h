@@ -19,8 +19,7 @@
 //
 //   const StudioRig studio(scenario, seed);          // throws scenarios::InputError
 //   studio.cameras()[3].world_from_camera;
-#ifndef SIMBENCH_RECONSTRUCTION_STUDIO_H_
-#define SIMBENCH_RECONSTRUCTION_STUDIO_H_
+#pragma once
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -47,5 +46,3 @@ class StudioRig {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_STUDIO_H_

@@ -6,8 +6,7 @@
 //
 //   const std::unique_ptr<Subject> person = make_person(studio.subject, 1.0);
 //   const std::vector<Eigen::Isometry3d> poses = person->poses(/*seconds=*/0.25);
-#ifndef SIMBENCH_RECONSTRUCTION_SUBJECT_H_
-#define SIMBENCH_RECONSTRUCTION_SUBJECT_H_
+#pragma once
 
 #include <Eigen/Geometry>
 #include <memory>
@@ -44,5 +43,3 @@ std::unique_ptr<Subject> make_rigid_subject(TriangleMesh mesh,
                                             double speed_factor);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_SUBJECT_H_

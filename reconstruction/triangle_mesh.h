@@ -2,8 +2,7 @@
 //
 // Units: metres. A triangle is three indices into `vertices`; seen from outside its corners run
 // counter-clockwise. `colours` is empty, or one for each vertex, red, green, blue in [0, 1].
-#ifndef SIMBENCH_RECONSTRUCTION_TRIANGLE_MESH_H_
-#define SIMBENCH_RECONSTRUCTION_TRIANGLE_MESH_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <vector>
@@ -17,5 +16,3 @@ struct TriangleMesh {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_TRIANGLE_MESH_H_

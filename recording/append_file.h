@@ -8,8 +8,7 @@
 //   AppendFile file("DIR/frames.csv");   // must not be there yet
 //   file.buffer() += "a line\n";
 //   file.flush();
-#ifndef SIMBENCH_RECORDING_APPEND_FILE_H_
-#define SIMBENCH_RECORDING_APPEND_FILE_H_
+#pragma once
 
 #include <string>
 
@@ -37,5 +36,3 @@ class AppendFile {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_APPEND_FILE_H_

@@ -16,8 +16,7 @@
 //   Last last;
 //   clock_source.run({.seed = 1, .pipeline = "chrony", .host_sync = sync.get(),
 //                     .duration = from_ms(3.6e6), .interval = from_ms(1000)}, last);
-#ifndef SIMBENCH_RECORDING_CLOCK_SOURCE_H_
-#define SIMBENCH_RECORDING_CLOCK_SOURCE_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -63,5 +62,3 @@ class ClockSource {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_CLOCK_SOURCE_H_

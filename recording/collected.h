@@ -2,8 +2,7 @@
 //
 //   const std::vector<std::string> names =
 //       collected(scenario.pipelines, &scenarios::Pipeline::name);
-#ifndef SIMBENCH_RECORDING_COLLECTED_H_
-#define SIMBENCH_RECORDING_COLLECTED_H_
+#pragma once
 
 #include <functional>
 #include <type_traits>
@@ -20,5 +19,3 @@ auto collected(List&& list, const Projection& projection) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_COLLECTED_H_

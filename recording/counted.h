@@ -1,8 +1,7 @@
 // A count in a message: "1 run", "3 runs"; "once", "3 times".
 //
 //   const std::string text = counted(3, "run") + ", " + times(3);
-#ifndef SIMBENCH_RECORDING_COUNTED_H_
-#define SIMBENCH_RECORDING_COUNTED_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -19,5 +18,3 @@ inline std::string times(std::uint64_t count) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_COUNTED_H_

@@ -10,8 +10,7 @@
 //     return "half";
 //   });
 //   use(folder.path());
-#ifndef SIMBENCH_RECORDING_DISPOSABLE_H_
-#define SIMBENCH_RECORDING_DISPOSABLE_H_
+#pragma once
 
 #include <filesystem>
 #include <functional>
@@ -43,5 +42,3 @@ class Disposable {
 void dispose_of_all();
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_DISPOSABLE_H_

@@ -8,8 +8,7 @@
 //   for (const KeptEvent& event : kept.events()) {
 //     if (const auto* poll = event_as<DevicePoll>(event)) sink.on_event(*poll);
 //   }
-#ifndef SIMBENCH_RECORDING_EVENT_H_
-#define SIMBENCH_RECORDING_EVENT_H_
+#pragma once
 
 #include <optional>
 #include <span>
@@ -65,5 +64,3 @@ class KeptRecording final : public RecordingSink {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_EVENT_H_

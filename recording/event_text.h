@@ -31,8 +31,7 @@
 //   FieldReader fields(numbered);
 //   const auto order = fields.whole<std::uint64_t>("order");
 //   const KeptEvent again = read_event(fields);  // TextFieldError
-#ifndef SIMBENCH_RECORDING_EVENT_TEXT_H_
-#define SIMBENCH_RECORDING_EVENT_TEXT_H_
+#pragma once
 
 #include <stdexcept>
 #include <string>
@@ -72,5 +71,3 @@ FrameRecord read_frame(FieldReader& fields);
 FrameTruth read_truth(FieldReader& fields);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_EVENT_TEXT_H_

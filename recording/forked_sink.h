@@ -6,8 +6,7 @@
 //   ForkedSink fork({&first_scorer, &second_scorer});
 //   source.record(request, fork);
 //   if (fork.failure(0)) std::rethrow_exception(fork.failure(0));
-#ifndef SIMBENCH_RECORDING_FORKED_SINK_H_
-#define SIMBENCH_RECORDING_FORKED_SINK_H_
+#pragma once
 
 #include <cstddef>
 #include <exception>
@@ -62,5 +61,3 @@ class ForkedSink final : public RecordingSink {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_FORKED_SINK_H_

@@ -7,8 +7,7 @@
 //       if (!std::holds_alternative<DevicePoll>(event)) sink().on_event(event);
 //     }
 //   };
-#ifndef SIMBENCH_RECORDING_FORWARDING_SINK_H_
-#define SIMBENCH_RECORDING_FORWARDING_SINK_H_
+#pragma once
 
 #include <span>
 
@@ -35,5 +34,3 @@ class ForwardingSink : public RecordingSink {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_FORWARDING_SINK_H_

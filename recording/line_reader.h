@@ -6,8 +6,7 @@
 //
 //   LineReader lines("DIR/frames.csv");
 //   while (const auto line = lines.next()) use(*line, lines.place());
-#ifndef SIMBENCH_RECORDING_LINE_READER_H_
-#define SIMBENCH_RECORDING_LINE_READER_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -54,5 +53,3 @@ class LineReader {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_LINE_READER_H_

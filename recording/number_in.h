@@ -2,8 +2,7 @@
 // and whatever the locale.
 //
 //   const std::optional<double> value = number_in<double>("2.5e-3");
-#ifndef SIMBENCH_RECORDING_NUMBER_IN_H_
-#define SIMBENCH_RECORDING_NUMBER_IN_H_
+#pragma once
 
 #include <charconv>
 #include <optional>
@@ -23,5 +22,3 @@ std::optional<Number> number_in(std::string_view text) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_NUMBER_IN_H_

@@ -10,8 +10,7 @@
 //   const evaluation::Diagnosis diagnosis = evaluation::diagnose(sink.take(), {});
 //
 // Memory: 24 bytes a frame.
-#ifndef SIMBENCH_RECORDING_RECORDED_STREAM_SINK_H_
-#define SIMBENCH_RECORDING_RECORDED_STREAM_SINK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -48,5 +47,3 @@ class RecordedStreamSink final : public RecordingSink {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_RECORDED_STREAM_SINK_H_

@@ -4,8 +4,7 @@
 //   for (const RecordedStream& stream : app::recorded_streams({"rig.bag"}).streams) ...
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped.
-#ifndef SIMBENCH_RECORDING_RECORDED_STREAMS_H_
-#define SIMBENCH_RECORDING_RECORDED_STREAMS_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -62,5 +61,3 @@ class RecordedFileError : public std::runtime_error {
 using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_RECORDED_STREAMS_H_

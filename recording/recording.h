@@ -24,8 +24,7 @@
 //   KeptRecording kept;
 //   source.record(request, kept);       // any RecordingSource
 //   kept.play(scorer);                  // any other RecordingSink
-#ifndef SIMBENCH_RECORDING_RECORDING_H_
-#define SIMBENCH_RECORDING_RECORDING_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -236,5 +235,3 @@ class RecordingSource {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_RECORDING_H_

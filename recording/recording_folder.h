@@ -29,8 +29,7 @@
 //
 //   RecordingFolder folder("monday");
 //   folder.play(folder.find("yoon2021_both", 1).value(), scorer);
-#ifndef SIMBENCH_RECORDING_RECORDING_FOLDER_H_
-#define SIMBENCH_RECORDING_RECORDING_FOLDER_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -121,5 +120,3 @@ class RecordingFolder {
 std::unique_ptr<RecordingSource> make_recorded_source(const RecordingFolder& folder);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_RECORDING_FOLDER_H_

@@ -6,8 +6,7 @@
 //
 //   const RecordingManifest manifest = parse_manifest(text, "monday/manifest.json");
 //   write_manifest(manifest, "monday");
-#ifndef SIMBENCH_RECORDING_RECORDING_MANIFEST_H_
-#define SIMBENCH_RECORDING_RECORDING_MANIFEST_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -43,5 +42,3 @@ inline constexpr const char* kFramesFile = "/frames.csv";
 inline constexpr const char* kEventsFile = "/events.csv";
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_RECORDING_MANIFEST_H_

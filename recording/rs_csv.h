@@ -30,8 +30,7 @@
 //   reader.read_file("front.csv");
 //   reader.read_file("back.csv");
 //   std::vector<RecordedStream> streams = reader.take();
-#ifndef SIMBENCH_RECORDING_RS_CSV_H_
-#define SIMBENCH_RECORDING_RS_CSV_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -125,5 +124,3 @@ void check_given_once(const std::vector<std::string>& files);
 std::vector<std::string> camera_names(const std::vector<std::string>& files);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_RS_CSV_H_

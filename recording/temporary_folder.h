@@ -2,8 +2,7 @@
 //
 //   TemporaryFolder folder;
 //   use(folder.file("rig.json"));
-#ifndef SIMBENCH_RECORDING_TEMPORARY_FOLDER_H_
-#define SIMBENCH_RECORDING_TEMPORARY_FOLDER_H_
+#pragma once
 
 #include <stdlib.h>
 
@@ -36,5 +35,3 @@ class TemporaryFolder {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_TEMPORARY_FOLDER_H_

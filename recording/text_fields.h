@@ -9,8 +9,7 @@
 //   fields.end();
 //
 //   parse_ms("12.3456789", 1000);   // 12'345'679 ns: digits beyond the sixth are rounded
-#ifndef SIMBENCH_RECORDING_TEXT_FIELDS_H_
-#define SIMBENCH_RECORDING_TEXT_FIELDS_H_
+#pragma once
 
 #include <charconv>
 #include <concepts>
@@ -156,5 +155,3 @@ std::optional<Nanoseconds> parse_ms(std::string_view text, std::int64_t largest_
 std::string ms_text(Nanoseconds time);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_TEXT_FIELDS_H_

@@ -4,8 +4,7 @@
 // (docs/design.md section 5: one type for each time base). Unit: integer nanoseconds. Zero is the
 // nominal start of host synchronisation; a world with a history (clocks set hours before) starts
 // below zero.
-#ifndef SIMBENCH_RECORDING_TRUE_TIME_H_
-#define SIMBENCH_RECORDING_TRUE_TIME_H_
+#pragma once
 
 #include <chrono>
 
@@ -22,5 +21,3 @@ struct True {
 using TrueTime = std::chrono::time_point<time_base::True>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_TRUE_TIME_H_

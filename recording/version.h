@@ -1,8 +1,7 @@
 // The version of simbench: for --version, for the manifest of a result, for messages about a seed.
 //
 // The values are read at build time into a small source file (cmake/version.cmake).
-#ifndef SIMBENCH_RECORDING_VERSION_H_
-#define SIMBENCH_RECORDING_VERSION_H_
+#pragma once
 
 #include <string_view>
 
@@ -16,5 +15,3 @@ std::string_view version();
 std::string_view commit();
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_VERSION_H_

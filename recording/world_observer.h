@@ -13,8 +13,7 @@
 //   };
 //
 //   source.record({.seed = 1, .pipeline = "mine", .observer = &observer}, sink);
-#ifndef SIMBENCH_RECORDING_WORLD_OBSERVER_H_
-#define SIMBENCH_RECORDING_WORLD_OBSERVER_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -84,5 +83,3 @@ class WorldObserver {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_RECORDING_WORLD_OBSERVER_H_

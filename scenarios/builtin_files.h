@@ -1,7 +1,6 @@
 // The files of scenarios/*.json and of its folders cameras, oscillators, parts and studies, built
 // into the program by embed.cmake.
-#ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
-#define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
+#pragma once
 
 #include <string_view>
 #include <vector>
@@ -44,5 +43,3 @@ const std::vector<BuiltinFile>& study_files();
 std::string_view study_schema_text();
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_BUILTIN_FILES_H_

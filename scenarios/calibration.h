@@ -24,8 +24,7 @@
 // another. Calibrations have errors: /cameras/calibration changes the world, not these values.
 //
 //   const double delay_ms = calibrated_delay_ms(scenario, *scenario.scored_stream());
-#ifndef SIMBENCH_SCENARIOS_CALIBRATION_H_
-#define SIMBENCH_SCENARIOS_CALIBRATION_H_
+#pragma once
 
 #include "scenarios/scenario.h"
 
@@ -37,5 +36,3 @@ double calibrated_delay_ms(const Scenario& scenario, const Stream& stream);
 double calibrated_asymmetry_ms(const ClockPoll& polls);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_CALIBRATION_H_

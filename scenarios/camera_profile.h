@@ -12,8 +12,7 @@
 //   const CameraProfile* camera = find_camera_profile("d455");
 //   camera->triggers(SyncMode::kSlave, StreamKind::kDepth);              // true
 //   camera->stream(StreamKind::kDepth)->find_size(848, 480)->rates_hz;  // 15, 30, 60, 90
-#ifndef SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
-#define SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -97,5 +96,3 @@ const CameraProfile* find_camera_profile(std::string_view model);
 std::string camera_profiles_json();
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_

@@ -1,6 +1,5 @@
 // The differences of two resolved scenarios, and a value of a scenario on one line.
-#ifndef SIMBENCH_SCENARIOS_CHANGES_H_
-#define SIMBENCH_SCENARIOS_CHANGES_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,5 +27,3 @@ bool is_table(const nlohmann::ordered_json& value);
 std::string value_text(const nlohmann::ordered_json& value);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_CHANGES_H_

@@ -6,8 +6,7 @@
 //
 //   const SyncMode mode = from_text<SyncMode>("genlock").value();
 //   const bool follows_pulses = waits_for_trigger(mode);  // true
-#ifndef SIMBENCH_SCENARIOS_CHOICES_H_
-#define SIMBENCH_SCENARIOS_CHOICES_H_
+#pragma once
 
 #include "scenarios/schema_choices.h"
 
@@ -27,5 +26,3 @@ constexpr bool turns(MotionScript motion) {
 }
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_CHOICES_H_

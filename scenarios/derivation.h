@@ -10,8 +10,7 @@
 //   const Scenario s = load_scenario("18cam_6host_45fps", {{"/trigger/rate_hz", "30"}});
 //   named(s.name, s.derivation);     // "18cam_6host_45fps (changed)"
 //   changed_text(s.derivation);      // "changed: /trigger/rate_hz 45 → 30"
-#ifndef SIMBENCH_SCENARIOS_DERIVATION_H_
-#define SIMBENCH_SCENARIOS_DERIVATION_H_
+#pragma once
 
 #include <cstddef>
 #include <limits>
@@ -49,5 +48,3 @@ std::string unpublished_text(const Derivation& derivation);
 std::vector<std::string> derivation_lines(const Derivation& derivation);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_DERIVATION_H_

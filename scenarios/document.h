@@ -4,8 +4,7 @@
 // and nesting is limited to kMaximumNesting, which also bounds the recursion of later walks over
 // the document. A byte order mark is skipped. Whole numbers are std::int64_t however they are
 // written (480, 480.0, 4.8e2), all others double.
-#ifndef SIMBENCH_SCENARIOS_DOCUMENT_H_
-#define SIMBENCH_SCENARIOS_DOCUMENT_H_
+#pragma once
 
 #include <cstddef>
 #include <map>
@@ -104,5 +103,3 @@ struct PlacedDocument {
 PlacedDocument parse_placed(std::string_view text, const Place& file);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_DOCUMENT_H_

@@ -5,8 +5,7 @@
 // Throws InputError with the place, what was found and what is allowed (fail_at, loader.h).
 //
 //   check_frame_control(scenario);  // after the checks of the streams
-#ifndef SIMBENCH_SCENARIOS_FRAME_CONTROL_CHECKS_H_
-#define SIMBENCH_SCENARIOS_FRAME_CONTROL_CHECKS_H_
+#pragma once
 
 #include "scenarios/scenario.h"
 
@@ -15,5 +14,3 @@ namespace simbench::scenarios {
 void check_frame_control(const Scenario& scenario);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_FRAME_CONTROL_CHECKS_H_

@@ -4,8 +4,7 @@
 //   const Scenario scenario = load_scenario("8cam_raspberry_30fps");
 //   const FrameControlLimits limits = frame_limits(scenario);
 //   const bool can_be_longer = limits.longest > limits.frame_length;
-#ifndef SIMBENCH_SCENARIOS_FRAME_LIMITS_H_
-#define SIMBENCH_SCENARIOS_FRAME_LIMITS_H_
+#pragma once
 
 #include "algorithms/ports/frame_control.h"
 #include "scenarios/scenario.h"
@@ -16,5 +15,3 @@ namespace simbench::scenarios {
 FrameControlLimits frame_limits(const Scenario& scenario);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_FRAME_LIMITS_H_

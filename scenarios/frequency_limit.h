@@ -1,13 +1,10 @@
 // How far an oscillator's random walk, and its ramp, take the frequency at most, as a fraction:
 // further than any oscillator is off. A clock runs forward in every world; a run whose clocks get
 // there says so, and so do the warnings of a scenario that makes it likely.
-#ifndef SIMBENCH_SCENARIOS_FREQUENCY_LIMIT_H_
-#define SIMBENCH_SCENARIOS_FREQUENCY_LIMIT_H_
+#pragma once
 
 namespace simbench::scenarios {
 
 inline constexpr double kMostFrequencyError = 0.05;
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_FREQUENCY_LIMIT_H_

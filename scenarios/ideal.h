@@ -6,8 +6,7 @@
 // evaluation/budget/budget.h, evaluation/budget/host_clock_budget.h.
 //
 //   const Scenario exact = with_ideal_stages(scenario, {"trigger", "exposure"});
-#ifndef SIMBENCH_SCENARIOS_IDEAL_H_
-#define SIMBENCH_SCENARIOS_IDEAL_H_
+#pragma once
 
 #include <string_view>
 #include <vector>
@@ -20,5 +19,3 @@ namespace simbench::scenarios {
 Scenario with_ideal_stages(const Scenario& scenario, const std::vector<std::string_view>& stages);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_IDEAL_H_

@@ -81,12 +81,27 @@ std::vector<json> included(json item, const std::string& place, const PipelinesO
   return all;
 }
 
+// `names` and `except` choose among pipelines that `from` takes.
+void check_pipeline(const json& item, const std::string& place) {
+  if (!item.is_object()) return;
+  for (const char* const member : {"names", "except"}) {
+    if (!item.contains(member)) continue;
+    throw InputError(fmt::format(
+        "{}/{}: found without \"from\", allowed: beside the scenario that it chooses from", place,
+        member));
+  }
+}
+
 }  // namespace
 
 void include_pipelines(PlacedDocument& file, const PipelinesOf& pipelines_of) {
   if (!file.root.is_object()) return;
   const auto items = file.root.find("pipelines");
   if (items == file.root.end() || !items->is_array()) return;
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    if (is_inclusion((*items)[i])) continue;
+    check_pipeline((*items)[i], file.places.describe(fmt::format("/pipelines/{}", i)));
+  }
   if (std::ranges::none_of(*items, is_inclusion)) return;
   json all = json::array();
   const Places written = file.places;

@@ -5,8 +5,7 @@
 // among the pipelines of a file stands for those of leaderboard_lan, in their order, whose names
 // are among `names` (a * at the end: that begin so; without `names`: all) and not among `except`.
 // Other members take the place of theirs.
-#ifndef SIMBENCH_SCENARIOS_INCLUDED_PIPELINES_H_
-#define SIMBENCH_SCENARIOS_INCLUDED_PIPELINES_H_
+#pragma once
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -24,5 +23,3 @@ using PipelinesOf =
 void include_pipelines(PlacedDocument& file, const PipelinesOf& pipelines_of);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_INCLUDED_PIPELINES_H_

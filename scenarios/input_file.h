@@ -12,8 +12,7 @@
 //   while (const std::size_t size = file.read(buffer, sizeof buffer)) use(buffer, size);
 //
 //   const std::string text = file_content("scenario.json", 4 << 20);
-#ifndef SIMBENCH_SCENARIOS_INPUT_FILE_H_
-#define SIMBENCH_SCENARIOS_INPUT_FILE_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -63,5 +62,3 @@ using ReadFunction = ssize_t (*)(int file, void* to, std::size_t most);
 ReadFunction exchange_read_function(ReadFunction other);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_SCENARIOS_INPUT_FILE_H_

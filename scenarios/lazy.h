@@ -5,8 +5,7 @@
 //
 //   const Lazy<std::string> text([] { return camera_profiles_json(); });
 //   std::cout << text();
-#ifndef SIMBENCH_SCENARIOS_LAZY_H_
-#define SIMBENCH_SCENARIOS_LAZY_H_
+#pragma once
 
 #include <functional>
 #include <memory>
@@ -39,5 +38,3 @@ class Lazy {
 };
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_LAZY_H_

@@ -13,10 +13,8 @@
 // The scenarios of the distribution are built into the program, so they need no installed files.
 //
 //   Scenario s = load_scenario("18cam_6host_45fps", {{"/timeline/frames", "100"}});
-#ifndef SIMBENCH_SCENARIOS_LOADER_H_
-#define SIMBENCH_SCENARIOS_LOADER_H_
+#pragma once
 
-#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -88,5 +86,3 @@ std::vector<ParameterLine> describe(const Scenario& scenario);
 std::vector<std::string> nearest(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_LOADER_H_

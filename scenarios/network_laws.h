@@ -1,8 +1,7 @@
 // The laws of a scenario's links as values (laws/message_law.h).
 //
 //   const DatagramLaw law = datagram_law(scenario.network);
-#ifndef SIMBENCH_SCENARIOS_NETWORK_LAWS_H_
-#define SIMBENCH_SCENARIOS_NETWORK_LAWS_H_
+#pragma once
 
 #include "laws/message_law.h"
 #include "scenarios/scenario.h"
@@ -27,5 +26,3 @@ inline LatencyLaw latency_law(const Network& network) {
 }
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_NETWORK_LAWS_H_

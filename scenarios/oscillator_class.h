@@ -11,8 +11,7 @@
 //
 //   const OscillatorClass* tcxo = find_oscillator_class("tcxo");
 //   const double sigma_ppm = tcxo->find("skew_sigma_ppm")->value;  // 1
-#ifndef SIMBENCH_SCENARIOS_OSCILLATOR_CLASS_H_
-#define SIMBENCH_SCENARIOS_OSCILLATOR_CLASS_H_
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -47,5 +46,3 @@ const OscillatorClass* find_oscillator_class(std::string_view class_name);
 void apply_oscillator_classes(nlohmann::json& scenario, Places& places);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_OSCILLATOR_CLASS_H_

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/document.h"

@@ -11,8 +11,7 @@
 //   const Part* cards = find_part("ptp_cards");
 //   cards->host_sync;                                   // {"ptp_e2e_hardware"}
 //   price_of(*cards, {.hosts = 8, .pieces = 8}).low_eur;  // 240
-#ifndef SIMBENCH_SCENARIOS_PART_H_
-#define SIMBENCH_SCENARIOS_PART_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -91,5 +90,3 @@ Part load_part(const std::string& path);
 Part load_part_text(const std::string& text, const std::string& file_name);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_PART_H_

@@ -1,7 +1,6 @@
 // What a scenario may say about published results (/published, /published_figures and
 // /studio/published).
-#ifndef SIMBENCH_SCENARIOS_PUBLISHED_CHECKS_H_
-#define SIMBENCH_SCENARIOS_PUBLISHED_CHECKS_H_
+#pragma once
 
 #include "scenarios/scenario.h"
 
@@ -13,5 +12,3 @@ namespace simbench::scenarios {
 void check_published(const Scenario& scenario);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_PUBLISHED_CHECKS_H_

@@ -17,15 +17,13 @@
 //
 // Sources: docs/reference/calibration.md (sections 1 and 2), docs/reference/d455.md, docs/design.md
 // section 7.
-#ifndef SIMBENCH_SCENARIOS_SCENARIO_H_
-#define SIMBENCH_SCENARIOS_SCENARIO_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -109,5 +107,3 @@ struct Scenario {
 };
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_SCENARIO_H_

@@ -3,13 +3,11 @@
 //
 //   const nlohmann::json document = scenario;
 //   const auto again = document.get<Scenario>();
-#ifndef SIMBENCH_SCENARIOS_SCENARIO_JSON_H_
-#define SIMBENCH_SCENARIOS_SCENARIO_JSON_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <variant>
 
 #include "scenarios/scenario.h"
@@ -101,5 +99,3 @@ void to_json(nlohmann::json& out, const Scenario& scenario);
 void from_json(const nlohmann::json& in, Scenario& scenario);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_SCENARIO_JSON_H_

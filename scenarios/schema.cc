@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <regex>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -8,8 +8,7 @@
 //   static const JsonSchema schema(nlohmann::json::parse(part_schema_text()));
 //   const PlacedDocument document = parse_placed(text, {.label = "my_part.json"});
 //   validate(document.root, schema, document.places);
-#ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
-#define SIMBENCH_SCENARIOS_SCHEMA_H_
+#pragma once
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -82,5 +81,3 @@ const Json* schema_of_child(const Json& node, const std::string& key) {
 }
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_SCHEMA_H_

@@ -2,10 +2,8 @@
 //
 //   auto schema = nlohmann::ordered_json::parse(text);
 //   expand_references(schema);  // {"$ref": "#/definitions/oscillator"} is now that definition
-#ifndef SIMBENCH_SCENARIOS_SCHEMA_REFERENCES_H_
-#define SIMBENCH_SCENARIOS_SCHEMA_REFERENCES_H_
+#pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,5 +37,3 @@ void expand_references(Json& schema) {
 }
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_SCHEMA_REFERENCES_H_

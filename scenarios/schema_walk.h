@@ -6,8 +6,7 @@
 //                  [](const auto& pointer, const auto& node, const auto& value) {
 //                    if (node.contains("x-relay")) print(pointer, value.dump());
 //                  });
-#ifndef SIMBENCH_SCENARIOS_SCHEMA_WALK_H_
-#define SIMBENCH_SCENARIOS_SCHEMA_WALK_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -40,5 +39,3 @@ bool schema_says(const char* keyword, std::string_view pointer);
 std::vector<std::string> pointers_that_say(const char* keyword, const nlohmann::json& value);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_SCHEMA_WALK_H_

@@ -4,8 +4,7 @@
 // A new study is a new file in that folder, without any other change.
 //
 //   simbench sweep --study scalability -o results/scalability
-#ifndef SIMBENCH_SCENARIOS_STUDY_H_
-#define SIMBENCH_SCENARIOS_STUDY_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -51,5 +50,3 @@ const std::vector<Study>& studies();
 const Study* find_study(std::string_view name);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_STUDY_H_

@@ -2,8 +2,7 @@
 //
 //   unit_in_name("max_rate_ppm");   // "ppm"
 //   unit_in_name("stamps");         // ""
-#ifndef SIMBENCH_SCENARIOS_UNITS_H_
-#define SIMBENCH_SCENARIOS_UNITS_H_
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -14,5 +13,3 @@ namespace simbench::scenarios {
 std::string unit_in_name(std::string_view name);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_UNITS_H_

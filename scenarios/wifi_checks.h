@@ -1,6 +1,5 @@
 // What a scenario may say beside a wireless cell (/network/wifi).
-#ifndef SIMBENCH_SCENARIOS_WIFI_CHECKS_H_
-#define SIMBENCH_SCENARIOS_WIFI_CHECKS_H_
+#pragma once
 
 #include "scenarios/scenario.h"
 
@@ -12,5 +11,3 @@ namespace simbench::scenarios {
 void check_wifi(const Scenario& scenario);
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_WIFI_CHECKS_H_

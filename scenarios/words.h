@@ -8,8 +8,7 @@
 //   from_text<SyncMode>("full_slave");    // SyncMode::kFullSlave
 //   from_text<SyncMode>("fullslave");     // nothing
 //   all_texts<SyncMode>();                // "default", "master", "slave", "full_slave", "genlock"
-#ifndef SIMBENCH_SCENARIOS_WORDS_H_
-#define SIMBENCH_SCENARIOS_WORDS_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -57,5 +56,3 @@ std::vector<std::string> all_texts() {
 }
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_SCENARIOS_WORDS_H_

@@ -7,8 +7,7 @@
 //
 //   const int fd = open("/dev/ptp0", O_RDWR);
 //   const clockid_t clock = (~static_cast<clockid_t>(fd) << 3) | 3;  // FD_TO_CLOCKID
-#ifndef SIMBENCH_SHIM_CARD_H_
-#define SIMBENCH_SHIM_CARD_H_
+#pragma once
 
 #include <time.h>
 
@@ -26,5 +25,3 @@ int card_ioctl(unsigned long what, void* argument);
 bool world_clock(clockid_t clock, std::int64_t& result);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_CARD_H_

@@ -9,8 +9,7 @@
 //   ClockPage own{};
 //   add_setting(own, {.since = 5000, .reads = 1'800'000'000'000'000'000, .rate = 12e-6});
 //   const std::int64_t reading_ns = reading_at(own, 6000);
-#ifndef SIMBENCH_SHIM_CLOCK_PAGE_H_
-#define SIMBENCH_SHIM_CLOCK_PAGE_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -78,5 +77,3 @@ inline std::int64_t reading_at(const ClockPage& page, std::int64_t monotonic) {
 }
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_CLOCK_PAGE_H_

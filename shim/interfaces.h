@@ -7,8 +7,7 @@
 //   char name[IFNAMSIZ];
 //   const InterfaceFacts card = interface_at(1);
 //   snprintf(name, sizeof name, "%s", card.name);
-#ifndef SIMBENCH_SHIM_INTERFACES_H_
-#define SIMBENCH_SHIM_INTERFACES_H_
+#pragma once
 
 #include <cstdint>
 
@@ -41,5 +40,3 @@ bool is_about_interfaces(unsigned long what);
 int interface_ioctl(unsigned long what, void* argument);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_INTERFACES_H_

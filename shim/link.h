@@ -17,8 +17,7 @@
 //   TimerSetting before{};
 //   Received reply{.data = &before, .capacity = sizeof before};
 //   ask({.call = Call::kSetTimer, .fd = 7}, {&wanted, sizeof wanted}, {}, &reply);
-#ifndef SIMBENCH_SHIM_LINK_H_
-#define SIMBENCH_SHIM_LINK_H_
+#pragma once
 
 #include <time.h>
 
@@ -134,5 +133,3 @@ bool wait_for_input(int fd, std::int64_t timeout_ns);
 std::int64_t read_timer(int fd, void* data, std::size_t size);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_LINK_H_

@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include <cstddef>
-#include <initializer_list>
 
 namespace simbench::shim {
 namespace {

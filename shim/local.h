@@ -7,8 +7,7 @@
 //   const int fd = local_socket(AF_UNIX, SOCK_DGRAM, 0);
 //   const sockaddr_un name{.sun_family = AF_UNIX, .sun_path = "./ptp4l"};
 //   local_bind(fd, reinterpret_cast<const sockaddr*>(&name), sizeof name);
-#ifndef SIMBENCH_SHIM_LOCAL_H_
-#define SIMBENCH_SHIM_LOCAL_H_
+#pragma once
 
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -33,5 +32,3 @@ ssize_t local_write(int fd, const void* data, std::size_t size);
 void local_closed();
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_LOCAL_H_

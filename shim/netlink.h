@@ -9,8 +9,7 @@
 //   const int fd = open_netlink(SOCK_RAW | SOCK_CLOEXEC, 0);  // NETLINK_ROUTE
 //   const msghdr nothing{};
 //   if (is_netlink(fd)) netlink_send(fd, nothing);
-#ifndef SIMBENCH_SHIM_NETLINK_H_
-#define SIMBENCH_SHIM_NETLINK_H_
+#pragma once
 
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -28,5 +27,3 @@ ssize_t netlink_receive(int fd, msghdr& message, int flags);
 int netlink_name(sockaddr* name, socklen_t* size);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_NETLINK_H_

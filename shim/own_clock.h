@@ -9,8 +9,7 @@
 //   std::int64_t reading_ns = 0;
 //   if (is_own_clock(CLOCK_REALTIME)) reading_ns = own_time();
 //   const std::int64_t then_ns = own_time_at({.tv_sec = 1'800'000'000, .tv_nsec = 0});
-#ifndef SIMBENCH_SHIM_OWN_CLOCK_H_
-#define SIMBENCH_SHIM_OWN_CLOCK_H_
+#pragma once
 
 #include <sys/socket.h>
 #include <time.h>
@@ -40,5 +39,3 @@ timespec machine_time_of(const timespec& reading);
 void convert_stamps(msghdr& message);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_OWN_CLOCK_H_

@@ -15,8 +15,7 @@
 // kAdjustClock and kNote only.
 //
 // Untrusted: the world checks every number of a request (processes/requests.h).
-#ifndef SIMBENCH_SHIM_PROTOCOL_H_
-#define SIMBENCH_SHIM_PROTOCOL_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -167,5 +166,3 @@ struct Arrival {
 inline constexpr std::int64_t kNoStamp = INT64_MIN;
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_PROTOCOL_H_

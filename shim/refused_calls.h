@@ -10,8 +10,7 @@
 //   }
 //
 // Source: syscalls(2), and the man page of each.
-#ifndef SIMBENCH_SHIM_REFUSED_CALLS_H_
-#define SIMBENCH_SHIM_REFUSED_CALLS_H_
+#pragma once
 
 #include <sys/syscall.h>
 
@@ -188,5 +187,3 @@ inline constexpr RefusedCall kRefusedCalls[] = {
 #undef SIMBENCH_REFUSED
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_REFUSED_CALLS_H_

@@ -3,8 +3,7 @@
 //   Address to{};
 //   const sockaddr_in name{};
 //   read_address(reinterpret_cast<const sockaddr*>(&name), sizeof name, to);
-#ifndef SIMBENCH_SHIM_SOCKETS_H_
-#define SIMBENCH_SHIM_SOCKETS_H_
+#pragma once
 
 #include <sys/socket.h>
 
@@ -49,5 +48,3 @@ ssize_t gather(const msghdr& message, unsigned char* to, std::size_t room);
 std::size_t scatter(const unsigned char* from, std::size_t size, const msghdr& message);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_SOCKETS_H_

@@ -3,8 +3,7 @@
 //   const int fd = 5;
 //   const Address server{.host = 0x0A000001, .port = 80, .reserved = 0};
 //   if (is_stream(fd)) stream_connect(fd, server);
-#ifndef SIMBENCH_SHIM_STREAMS_H_
-#define SIMBENCH_SHIM_STREAMS_H_
+#pragma once
 
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -22,5 +21,3 @@ ssize_t stream_send(int fd, const msghdr& message, int flags);
 ssize_t stream_receive(int fd, msghdr& message, int flags);
 
 }  // namespace simbench::shim
-
-#endif  // SIMBENCH_SHIM_STREAMS_H_

@@ -14,8 +14,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <initializer_list>
-
 #include "shim/link.h"
 #include "shim/own_clock.h"
 #include "shim/refused_calls.h"

@@ -1,8 +1,7 @@
 // The first numbers of a generator, for comparisons with published and with equal ones.
 //
 //   EXPECT_THAT(first_draws(SplitMix64(7), 2), ElementsAre(...));
-#ifndef SIMBENCH_TESTS_FIRST_DRAWS_H_
-#define SIMBENCH_TESTS_FIRST_DRAWS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -19,5 +18,3 @@ std::vector<std::uint64_t> first_draws(Generator generator, int count) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_FIRST_DRAWS_H_

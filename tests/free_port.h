@@ -1,7 +1,6 @@
 // A port of this machine that is free for TCP and UDP. It is below the ports that the kernel gives
 // to outgoing connections, so that no such connection takes it before the test does.
-#ifndef SIMBENCH_TESTS_FREE_PORT_H_
-#define SIMBENCH_TESTS_FREE_PORT_H_
+#pragma once
 
 #include <unistd.h>
 
@@ -38,5 +37,3 @@ inline std::uint16_t free_port() {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_FREE_PORT_H_

@@ -2,8 +2,7 @@
 // nothing, so an empty range fails the test.
 //
 //   for (const auto& frame : nonempty(capture(scenario).frames)) EXPECT_GT(frame.counter, 0u);
-#ifndef SIMBENCH_TESTS_NONEMPTY_H_
-#define SIMBENCH_TESTS_NONEMPTY_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -25,5 +24,3 @@ Range nonempty(Range&& range, const char* file = __builtin_FILE(), int line = __
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_NONEMPTY_H_

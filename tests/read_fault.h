@@ -5,8 +5,7 @@
 //     const ReadFault fault(byte);
 //     EXPECT_THROW(read_file(path), FileError);
 //   }
-#ifndef SIMBENCH_TESTS_READ_FAULT_H_
-#define SIMBENCH_TESTS_READ_FAULT_H_
+#pragma once
 
 #include <unistd.h>
 
@@ -43,5 +42,3 @@ class ReadFault {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_READ_FAULT_H_

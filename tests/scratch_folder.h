@@ -2,8 +2,7 @@
 //
 //   const ScratchFolder folder;
 //   read_archive(folder.write("results.json", "{}"));
-#ifndef SIMBENCH_TESTS_SCRATCH_FOLDER_H_
-#define SIMBENCH_TESTS_SCRATCH_FOLDER_H_
+#pragma once
 
 #include <algorithm>
 #include <cstdlib>
@@ -67,5 +66,3 @@ class ScratchFolder {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_SCRATCH_FOLDER_H_

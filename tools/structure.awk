@@ -11,8 +11,6 @@ BEGIN {
     split(list[i], beside, "+")
     for (j in beside) level[beside[j]] = i
   }
-  guard = "SIMBENCH_" toupper(file) "_"
-  gsub(/[\/.]/, "_", guard)
 }
 function level_of(path,  part) { split(path, part, "/"); return level[part[2] in level ? part[2] : "."] }
 function found(what) { printf "%s:%d: %s\n", file, FNR, what }
@@ -30,7 +28,7 @@ function found(what) { printf "%s:%d: %s\n", file, FNR, what }
     found(part[2] " stands above this room")
 }
 
-/^#ifndef / && !guarded { guarded = 1; if ($2 == guard) good_guard = 1 }
+/^#pragma once$/ { once = 1 }
 
 /std::(normal|lognormal|gamma|exponential|poisson|uniform_real|uniform_int)_distribution/ {
   found("a std:: distribution gives other numbers with another library; use Boost.Random")
@@ -38,6 +36,6 @@ function found(what) { printf "%s:%d: %s\n", file, FNR, what }
 /(^|[^A-Za-z_])(TODO|FIXME|XXX)([^A-Za-z_]|$)/ { found("unfinished: do it or leave it out") }
 
 END {
-  if (file ~ /\.h$/ && !good_guard) printf "%s:1: header guard is not %s\n", file, guard
+  if (file ~ /\.h$/ && !once) printf "%s:1: a header without #pragma once\n", file
   if (FNR > 600) printf "%s:%d: longer than 600 lines\n", file, FNR
 }

@@ -23,8 +23,7 @@
 //
 //   FrameClock frame_clock;
 //   const HostTime exposed_at = frame_clock.at(FrameArrival{}).exposed;
-#ifndef SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_FRAME_CLOCK_H_
-#define SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_FRAME_CLOCK_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -62,5 +61,3 @@ class FrameClock {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_FRAME_CLOCK_H_

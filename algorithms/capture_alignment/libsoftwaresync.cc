@@ -17,7 +17,6 @@
 // button, pressed `start_s` after the cameras began.
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -22,8 +22,7 @@
 //   PhaseLine course(from_ms(33), 300);
 //   course.add(7, HostTime(from_ms(231.2)));
 //   const double late_ns = course.error_ns(12);
-#ifndef SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
-#define SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -102,5 +101,3 @@ class PhaseLine {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_PHASE_LINE_H_

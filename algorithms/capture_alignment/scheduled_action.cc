@@ -11,7 +11,6 @@
 // `moved_us`, three times in all; a camera that happened to be in phase is then reported as not
 // aligned.
 
-#include <memory>
 #include <string>
 #include <vector>
 

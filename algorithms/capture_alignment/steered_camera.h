@@ -21,8 +21,7 @@
 //       if (!is_taken) co_return;
 //     }
 //   }
-#ifndef SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_STEERED_CAMERA_H_
-#define SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_STEERED_CAMERA_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -105,5 +104,3 @@ auto each_camera(Task<void> (*steer)(Host& host, FrameControl& camera, Settings 
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_CAPTURE_ALIGNMENT_STEERED_CAMERA_H_

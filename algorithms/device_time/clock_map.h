@@ -15,8 +15,7 @@
 //   ClockMap map;
 //   map.add(adjustment);                        // in order
 //   std::optional<HostTime> t = map.to_system(steady);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_CLOCK_MAP_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_CLOCK_MAP_H_
+#pragma once
 
 #include <cstddef>
 #include <deque>
@@ -41,5 +40,3 @@ class ClockMap {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_CLOCK_MAP_H_

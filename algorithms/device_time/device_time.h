@@ -9,8 +9,7 @@
 //
 //   auto estimator = make_regression(RegressionWindow{30});
 //   for (const DeviceSample& sample : frames) global.push_back(estimator->stamp(sample));
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -73,5 +72,3 @@ class DeviceTimeEstimator {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_

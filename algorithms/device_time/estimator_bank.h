@@ -17,8 +17,7 @@
 //
 //   auto bank = make_bank([] { return make_regression(RegressionWindow{30}); }, /*cameras=*/18);
 //   bank->stamp(cameras, frames, global);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_ESTIMATOR_BANK_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_ESTIMATOR_BANK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -71,5 +70,3 @@ class Banked : public DeviceTimeEstimator {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_ESTIMATOR_BANK_H_

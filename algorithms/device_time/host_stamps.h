@@ -19,8 +19,7 @@
 //
 //   auto estimator = make_host_stamps();
 //   GlobalTime exposed = estimator->stamp(sample);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_HOST_STAMPS_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_HOST_STAMPS_H_
+#pragma once
 
 #include <memory>
 
@@ -31,5 +30,3 @@ namespace simbench {
 std::unique_ptr<DeviceTimeEstimator> make_host_stamps();
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_HOST_STAMPS_H_

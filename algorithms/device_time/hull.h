@@ -21,8 +21,7 @@
 // Complexity a frame: switching O(log vertices), window O(vertices), some 10. Memory: vertices (at
 // most LowerHull::kMaxVertices a hull), the window's frames.
 // Source: docs/reference/device_time.md sections 1 and 2; Harrison, Newman: TICSync, 2011.
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_HULL_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_HULL_H_
+#pragma once
 
 #include <cstddef>
 #include <memory>
@@ -63,5 +62,3 @@ std::unique_ptr<DeviceTimeEstimator> make_offline_hull(OfflineHullSettings setti
 void bind_max_skew(ParameterBinder& parameters, double& max_skew_ppm);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_HULL_H_

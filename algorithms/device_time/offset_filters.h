@@ -7,8 +7,7 @@
 //
 //   auto estimator = make_sliding_minimum({.window_s = 1});
 //   GlobalTime stamp = estimator->stamp(sample);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_FILTERS_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_FILTERS_H_
+#pragma once
 
 #include <cstddef>
 #include <memory>
@@ -93,5 +92,3 @@ struct KalmanSettings {
 std::unique_ptr<DeviceTimeEstimator> make_kalman(KalmanSettings settings);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_FILTERS_H_

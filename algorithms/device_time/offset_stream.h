@@ -1,6 +1,5 @@
 // A camera's samples as exact points (sensor stamp, offset), and as a clean series of them.
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -152,5 +151,3 @@ class OffsetStream {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_

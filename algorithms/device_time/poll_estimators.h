@@ -1,7 +1,6 @@
 // device_time over polls of the camera's clock, without the frames' arrivals: the series of polls,
 // and the estimators on it. Both need polls (Need::kPolls).
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_POLL_ESTIMATORS_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_POLL_ESTIMATORS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -122,5 +121,3 @@ std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settin
 std::unique_ptr<DeviceTimeEstimator> make_librealsense_global();
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_POLL_ESTIMATORS_H_

@@ -39,8 +39,7 @@
 //   for (const LedSample& sighting : sightings) estimator->on_led_sighting(sighting);
 //   estimator->learn(frames);
 //   GlobalTime on_led_clock = estimator->stamp(frames[0]);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_ROCSYNC_LED_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_ROCSYNC_LED_H_
+#pragma once
 
 #include <cstddef>
 #include <memory>
@@ -61,5 +60,3 @@ struct RocsyncLedSettings {
 std::unique_ptr<DeviceTimeEstimator> make_rocsync_led(RocsyncLedSettings settings = {});
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_ROCSYNC_LED_H_

@@ -12,8 +12,7 @@
 //
 //   DeviceStampUnwrapper unwrapper;   // one per camera
 //   DeviceTime sensor = unwrapper.unwrap(record.sensor);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -57,5 +56,3 @@ class DeviceStampUnwrapper {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_

@@ -18,8 +18,7 @@
 //   const DeviceTimeName name = parse_device_time_name("hull_300_steady_exposure_corrected");
 //   auto estimator = make_variant(name,
 //   find_algorithm<DeviceTimeEntry>(name.base)->make(parameters), {});
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -74,5 +73,3 @@ std::unique_ptr<DeviceTimeEstimator> make_variant(const DeviceTimeName& name,
                                                   const CalibratedDelays& delays);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_

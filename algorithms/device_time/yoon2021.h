@@ -4,8 +4,7 @@
 //
 //   auto estimator = make_regression({.frames = 30});
 //   GlobalTime stamp = estimator->stamp(sample);
-#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_YOON2021_H_
-#define SIMBENCH_ALGORITHMS_DEVICE_TIME_YOON2021_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -84,5 +83,3 @@ std::unique_ptr<DeviceTimeEstimator> make_raw_arrival();
 std::unique_ptr<DeviceTimeEstimator> make_sensor_normalised();
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_YOON2021_H_

@@ -1,7 +1,6 @@
 // Parts of the policies that compare the fronts of n queues: the queues, the matcher of Algorithm
 // 3, and the tournament of the earliest and latest front.
-#ifndef SIMBENCH_ALGORITHMS_GATHERING_FRONTS_H_
-#define SIMBENCH_ALGORITHMS_GATHERING_FRONTS_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -215,5 +214,3 @@ class FrontTournament {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_GATHERING_FRONTS_H_

@@ -2,8 +2,7 @@
 //
 //   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = from_ms(22)});
 //   gatherer->push(frame, set_sink);
-#ifndef SIMBENCH_ALGORITHMS_GATHERING_GATHERERS_H_
-#define SIMBENCH_ALGORITHMS_GATHERING_GATHERERS_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -172,5 +171,3 @@ std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setu
 std::unique_ptr<Gatherer> make_oracle_gatherer(const GatheringSetup& setup);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_GATHERING_GATHERERS_H_

@@ -8,8 +8,7 @@
 //
 //   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = ..., .interval = ...});
 //   gatherer->push({.source = 3, .stamp = stamp, .tag = frame_index}, set_sink);
-#ifndef SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_
-#define SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -91,5 +90,3 @@ class BlockGatherer : public Gatherer {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_

@@ -17,8 +17,7 @@
 //
 //   GenlockOrder order(from_ms(1000.0 / 45), GenlockOrder::Variant::kReanchored);
 //   std::int64_t index = order.next(frame.sensor);   // one object per camera
-#ifndef SIMBENCH_ALGORITHMS_GATHERING_GENLOCK_ORDER_H_
-#define SIMBENCH_ALGORITHMS_GATHERING_GENLOCK_ORDER_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -62,5 +61,3 @@ class GenlockOrder {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_GATHERING_GENLOCK_ORDER_H_

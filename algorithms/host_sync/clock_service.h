@@ -9,8 +9,7 @@
 //   Task<void> serve_time(Host& host, std::vector<PeerId> slaves, TimeSettings settings);
 //   Task<void> follow_time(Host& host, PeerId master, TimeSettings settings);
 //   using TimeService = ClockService<TimeSettings, serve_time, follow_time>;
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_SERVICE_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_SERVICE_H_
+#pragma once
 
 #include <optional>
 #include <utility>
@@ -46,5 +45,3 @@ inline void bind_warm_up(ParameterBinder& parameters, Nanoseconds& service_time,
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_SERVICE_H_

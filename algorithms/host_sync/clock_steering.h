@@ -21,8 +21,7 @@
 //   SteeredClock clock(host, {});
 //   clock.observe(message.received, message.received_steady);
 //   co_await clock.steer(line);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
+#pragma once
 
 #include <algorithm>
 
@@ -128,5 +127,3 @@ class SteeredClock {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_

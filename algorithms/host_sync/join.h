@@ -7,8 +7,7 @@
 //   std::vector<Task<void>> tasks;
 //   for (PeerId peer : peers) tasks.push_back(serve(host, peer));
 //   co_await join_all(std::move(tasks));
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_JOIN_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_JOIN_H_
+#pragma once
 
 #include <vector>
 
@@ -19,5 +18,3 @@ namespace simbench {
 Task<void> join_all(std::vector<Task<void>> tasks);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_JOIN_H_

@@ -14,8 +14,7 @@
 //
 //   Bytes bytes = encode(SessionMessage{.kind = MessageKind::kReady, .pass = 1});
 //   std::optional<SessionMessage> message = decode_session_message(bytes);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_MESSAGES_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_MESSAGES_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -104,5 +103,3 @@ Bytes encode(const CommonViewMessage& message);
 std::optional<CommonViewMessage> decode_common_view_message(const Bytes& bytes);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_MESSAGES_H_

@@ -3,8 +3,7 @@
 //
 //   OutcomeReport outcome(host);
 //   outcome.failed(8, "no reply from the master; is it running?");  // "slave 3: no reply from ..."
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -38,5 +37,3 @@ class OutcomeReport {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_

@@ -13,8 +13,7 @@
 //   const MessageId id = co_await channel.send(Bytes(44));
 //   const auto departure = co_await stamps.departure(channel, id);
 //   if (const std::string what = stamps.lacking(); !what.empty()) outcome.failed(0, what);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_STAMPS_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_STAMPS_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -63,5 +62,3 @@ void bind_software_stamps(ParameterBinder& parameters, StampSource& source);
 std::vector<Need> needs_of(StampSource source);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_STAMPS_H_

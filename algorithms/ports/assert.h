@@ -4,8 +4,7 @@
 // check is cheap. Expected failures - input, network, hardware - are values or typed exceptions.
 //
 //   SIMBENCH_ASSERT(at >= now, "an event cannot be scheduled in the past");
-#ifndef SIMBENCH_ALGORITHMS_PORTS_ASSERT_H_
-#define SIMBENCH_ALGORITHMS_PORTS_ASSERT_H_
+#pragma once
 
 #include <cstdio>
 #include <cstdlib>
@@ -26,5 +25,3 @@ namespace simbench {
       ::simbench::assertion_failed(#condition, message, __FILE__, __LINE__); \
     }                                                                        \
   } while (false)
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_ASSERT_H_

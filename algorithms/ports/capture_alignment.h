@@ -18,8 +18,7 @@
 //     Task<void> run_master(Host&, std::vector<PeerId>) override { co_return; }
 //     Task<void> run_slave(Host&, PeerId) override { co_return; }
 //   };
-#ifndef SIMBENCH_ALGORITHMS_PORTS_CAPTURE_ALIGNMENT_H_
-#define SIMBENCH_ALGORITHMS_PORTS_CAPTURE_ALIGNMENT_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -45,5 +44,3 @@ class CaptureAlignment {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_CAPTURE_ALIGNMENT_H_

@@ -4,8 +4,7 @@
 // host's steady clock. The log begins with an adjustment that changes nothing, so the log alone
 // maps steady time to system time at any instant (algorithms/device_time/clock_map.h).
 // Source: docs/design.md section 2.
-#ifndef SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
-#define SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
+#pragma once
 
 #include <cstdint>
 
@@ -22,5 +21,3 @@ struct ClockAdjustment {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_

@@ -6,8 +6,7 @@
 //
 // Convention (RFC 5905 section 8): t1 leaves the client, t2 reaches the server, t3 leaves the
 // server, t4 reaches the client; t1 and t4 on the client's clock, t2 and t3 on the server's.
-#ifndef SIMBENCH_ALGORITHMS_PORTS_EXCHANGE_H_
-#define SIMBENCH_ALGORITHMS_PORTS_EXCHANGE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -45,5 +44,3 @@ struct AlignmentReport {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_EXCHANGE_H_

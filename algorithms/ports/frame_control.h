@@ -27,8 +27,7 @@
 //     const FrameControlReply reply = co_await camera.adjust_frame(from_ms(1));
 //     if (!reply.is_accepted()) throw std::runtime_error(reply.refused);
 //   }
-#ifndef SIMBENCH_ALGORITHMS_PORTS_FRAME_CONTROL_H_
-#define SIMBENCH_ALGORITHMS_PORTS_FRAME_CONTROL_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -109,5 +108,3 @@ std::string refusal_of(const FrameControlLimits& limits, FrameControlKind kind, 
 std::string refusal_of_start(const FrameControlLimits& limits, HostTime at, HostTime now);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_FRAME_CONTROL_H_

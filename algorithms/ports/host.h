@@ -21,8 +21,7 @@
 //     auto reply = co_await channel.receive(host.steady_clock().now() + from_ms(100));
 //     if (reply) co_await host.clock().set(reply->received + from_ms(2));
 //   }
-#ifndef SIMBENCH_ALGORITHMS_PORTS_HOST_H_
-#define SIMBENCH_ALGORITHMS_PORTS_HOST_H_
+#pragma once
 
 #include <boost/asio/awaitable.hpp>
 #include <cstddef>
@@ -208,5 +207,3 @@ class Host {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_HOST_H_

@@ -11,8 +11,7 @@
 //
 // Failures are outcomes, not exceptions: report them with Host::report_outcome, once per slave,
 // with a message that says what would help.
-#ifndef SIMBENCH_ALGORITHMS_PORTS_HOST_SYNC_H_
-#define SIMBENCH_ALGORITHMS_PORTS_HOST_SYNC_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -46,5 +45,3 @@ class HostSync {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_HOST_SYNC_H_

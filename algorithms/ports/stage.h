@@ -7,8 +7,7 @@
 //   for (const StageInfo& stage : kPipelineStages) {
 //     if (at_stage(pipeline, stage.id) == "oracle") print(stage.name);
 //   }
-#ifndef SIMBENCH_ALGORITHMS_PORTS_STAGE_H_
-#define SIMBENCH_ALGORITHMS_PORTS_STAGE_H_
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -99,5 +98,3 @@ std::string joined_stages(const Staged& staged, const std::string& between) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_STAGE_H_

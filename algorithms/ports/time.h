@@ -18,8 +18,7 @@
 //   HostTime sent = ...;
 //   HostTime later = sent + from_ms(2.5);
 //   double gap_ms = to_ms(later - sent);
-#ifndef SIMBENCH_ALGORITHMS_PORTS_TIME_H_
-#define SIMBENCH_ALGORITHMS_PORTS_TIME_H_
+#pragma once
 
 #include <chrono>
 #include <cstdint>
@@ -122,5 +121,3 @@ constexpr Nanoseconds offset_between(std::chrono::time_point<BaseA, DurationA> a
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_PORTS_TIME_H_

@@ -2,8 +2,7 @@
 // do.
 //
 // Definitions and check values: docs/reference/event_engine.md section 1. All times in nanoseconds.
-#ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_MODELS_H_
-#define SIMBENCH_BENCH_ENGINE_WORKLOADS_MODELS_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -132,5 +131,3 @@ class RigModel {
 };
 
 }  // namespace simbench::bench
-
-#endif  // SIMBENCH_BENCH_ENGINE_WORKLOADS_MODELS_H_

@@ -4,8 +4,7 @@
 // std::length_error beyond 3.4e10 events, which its keys cannot tell apart. Both sides share the
 // models (models.h), so that only the queue and the dispatch differ. Definitions and checksums:
 // docs/reference/event_engine.md section 1.
-#ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
-#define SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
+#pragma once
 
 #include <cstdint>
 
@@ -34,5 +33,3 @@ double cpu_seconds();
 [[noreturn]] void throw_too_short(std::int64_t duration_ms);
 
 }  // namespace simbench::bench
-
-#endif  // SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_

@@ -2,8 +2,7 @@
 //
 // A new command is a file NAME_command.cc with such a function, its line here and its place in the
 // list of cli/command_line.cc; help, completion and man page follow.
-#ifndef SIMBENCH_CLI_COMMANDS_COMMANDS_H_
-#define SIMBENCH_CLI_COMMANDS_COMMANDS_H_
+#pragma once
 
 #include <string>
 
@@ -81,5 +80,3 @@ std::string study_list();
 std::string figure_list();
 
 }  // namespace simbench::cli
-
-#endif  // SIMBENCH_CLI_COMMANDS_COMMANDS_H_

@@ -3,10 +3,8 @@
 // Half of simbench is not needed for that - nodes and rigs, bags, pages, studies - and takes half
 // of the time to compile. tools/run shows the first table in a fresh clone with this program, and
 // builds simbench after it. It has no options and runs no scenario with programs.
-#include <fmt/format.h>
 
 #include <exception>
-#include <optional>
 #include <string>
 
 #include "app/answer.h"

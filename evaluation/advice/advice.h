@@ -23,8 +23,7 @@
 //                                 .requirements = {parse_requirement("amd<1ms")}},
 //                                make_world, {}, nullptr);
 //   if (advice.recommended) advice.options[*advice.recommended].best().pipeline;
-#ifndef SIMBENCH_EVALUATION_ADVICE_ADVICE_H_
-#define SIMBENCH_EVALUATION_ADVICE_ADVICE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -109,5 +108,3 @@ Advice advise(const AdviceRequest& request, const WorldFactory& make_world,
               const AdviceOptions& options, const Progress& progress);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_ADVICE_ADVICE_H_

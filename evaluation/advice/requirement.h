@@ -12,8 +12,7 @@
 //   const Requirement requirement = parse_requirement("amd<0.1ms");
 //   requirement.limit;            // 0.1
 //   requirement.is_met_by(0.05);  // true
-#ifndef SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_
-#define SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -46,5 +45,3 @@ Requirement parse_requirement(const std::string& text);
 std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_

@@ -15,8 +15,7 @@
 //   const RigRequest rig = {.cameras = 24, .rate_hz = 60};
 //   const std::vector<RigOption> options = rig_options(rig);
 //   const scenarios::Scenario world = scenario_of(options.front(), rig, scenario.pipelines);
-#ifndef SIMBENCH_EVALUATION_ADVICE_RIG_OPTIONS_H_
-#define SIMBENCH_EVALUATION_ADVICE_RIG_OPTIONS_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -67,5 +66,3 @@ scenarios::Scenario scenario_of(const RigOption& option, const RigRequest& reque
 std::vector<double> supported_rates_hz();
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_ADVICE_RIG_OPTIONS_H_

@@ -20,8 +20,7 @@
 //
 //   const Answer answer = answer_of(results, RankedBy::kAmd);
 //   if (answer.best != nullptr) print(answer.best->pipeline);
-#ifndef SIMBENCH_EVALUATION_ANSWER_ANSWER_H_
-#define SIMBENCH_EVALUATION_ANSWER_ANSWER_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -78,5 +77,3 @@ const Row* best_of(const std::vector<const Row*>& rows, RankedBy ranked_by);
 const Series& ranked_series(const Row& row, RankedBy ranked_by);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_ANSWER_ANSWER_H_

@@ -57,8 +57,7 @@
 //
 //   const std::vector<Budget> budgets =
 //       error_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr);
-#ifndef SIMBENCH_EVALUATION_BUDGET_BUDGET_H_
-#define SIMBENCH_EVALUATION_BUDGET_BUDGET_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -148,5 +147,3 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
                                   const Progress& progress);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_BUDGET_BUDGET_H_

@@ -34,8 +34,7 @@
 //
 //   const std::vector<HostClockBudget> budgets =
 //       host_clock_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr);
-#ifndef SIMBENCH_EVALUATION_BUDGET_HOST_CLOCK_BUDGET_H_
-#define SIMBENCH_EVALUATION_BUDGET_HOST_CLOCK_BUDGET_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -88,5 +87,3 @@ std::vector<HostClockBudget> host_clock_budgets(const scenarios::Scenario& scena
                                                 const Progress& progress);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_BUDGET_HOST_CLOCK_BUDGET_H_

@@ -8,8 +8,7 @@
 //        pipeline_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr)) {
 //     print(budget.host_clock.algorithm.mean);
 //   }
-#ifndef SIMBENCH_EVALUATION_BUDGET_PIPELINE_BUDGET_H_
-#define SIMBENCH_EVALUATION_BUDGET_PIPELINE_BUDGET_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -35,5 +34,3 @@ std::vector<PipelineBudget> pipeline_budgets(const scenarios::Scenario& scenario
                                              const Progress& progress);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_BUDGET_PIPELINE_BUDGET_H_

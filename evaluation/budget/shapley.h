@@ -9,8 +9,7 @@
 // Source: Shapley, "A value for n-person games", 1953.
 //
 //   const std::vector<double> own = shapley_values(std::vector<double>{3, 1, 2, 0});  // {2, 1}
-#ifndef SIMBENCH_EVALUATION_BUDGET_SHAPLEY_H_
-#define SIMBENCH_EVALUATION_BUDGET_SHAPLEY_H_
+#pragma once
 
 #include <span>
 #include <vector>
@@ -42,5 +41,3 @@ DividedError divide_error(const std::vector<std::vector<double>>& by_world);
 BudgetPart budget_part(std::vector<double> values);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_BUDGET_SHAPLEY_H_

@@ -14,8 +14,7 @@
 //   const ClockResults results = evaluate_clocks(
 //       scenario, [&] { return sim::make_clock_simulation(scenario); },
 //       {.duration_s = 36000, .from_s = 300, .seeds = 8}, nullptr);
-#ifndef SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_EVALUATION_H_
-#define SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_EVALUATION_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -74,5 +73,3 @@ struct ClockPipelines {
 ClockPipelines clock_pipelines(const scenarios::Scenario& scenario, const ClockOptions& options);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_EVALUATION_H_

@@ -19,8 +19,7 @@
 //   ClockScorer scorer({.duration = from_seconds(3600), .from = from_seconds(300), .hosts = 6});
 //   const ClockCost cost = clock_source.run(clock_request, scorer);
 //   const ClockScore score = scorer.finish(cost.messages);
-#ifndef SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_
-#define SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_
+#pragma once
 
 #include <array>
 #include <chrono>
@@ -97,5 +96,3 @@ class ClockScorer final : public ClockSink {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_

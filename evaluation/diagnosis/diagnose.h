@@ -24,8 +24,7 @@
 //
 //   Diagnosis d = diagnose(reader.take(), {.rate_hz = 30});
 //   print(d.verdict.status, d.verdict.reason);
-#ifndef SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
-#define SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -191,5 +190,3 @@ std::string called_camera(const std::string& name);
 Diagnosis diagnose(const std::vector<RecordedStream>& streams, const DiagnoseOptions& options);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_

@@ -14,8 +14,7 @@
 // Errors: FitError. Complexity: O(n log n) in the frames and exchanges.
 //
 //   const RigFit fit = fit_rig(input);
-#ifndef SIMBENCH_EVALUATION_FIT_FIT_H_
-#define SIMBENCH_EVALUATION_FIT_FIT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -142,5 +141,3 @@ RigFit fit_rig(const FitInput& input);
 std::vector<double> quantile_table(const std::vector<double>& sorted);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FIT_FIT_H_

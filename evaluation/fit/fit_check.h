@@ -15,8 +15,7 @@
 //
 //   const FitStudy study = study_fit(input, base, "model.json", sim::make_simulation);
 //   print(study.whole.ks, study.hold_out->ks);
-#ifndef SIMBENCH_EVALUATION_FIT_FIT_CHECK_H_
-#define SIMBENCH_EVALUATION_FIT_FIT_CHECK_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -68,5 +67,3 @@ FitStudy study_fit(const FitInput& input, const FitBase& base, const std::string
                    const WorldFactory& make_world);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FIT_FIT_CHECK_H_

@@ -10,8 +10,7 @@
 //   const FitInput input = sink.take();
 //
 // Errors: FitError, one line that names the camera: stamps that are not of the camera's clock.
-#ifndef SIMBENCH_EVALUATION_FIT_FIT_INPUT_H_
-#define SIMBENCH_EVALUATION_FIT_FIT_INPUT_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -95,5 +94,3 @@ FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host);
 std::pair<FitInput, FitInput> halves(const FitInput& input);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FIT_FIT_INPUT_H_

@@ -13,8 +13,7 @@
 //
 // Errors: scenarios::InputError if the base does not support it (a frame rate that its cameras
 // lack).
-#ifndef SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_
-#define SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -52,5 +51,3 @@ FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base
                    const std::string& path);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_

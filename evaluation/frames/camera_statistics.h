@@ -11,11 +11,9 @@
 //
 //   const CameraStatistics found = camera_statistics(unwrapped(recorded.streams[0].frames));
 //   print(found.drift_ppm, found.excess.p99_ms);
-#ifndef SIMBENCH_EVALUATION_FRAMES_CAMERA_STATISTICS_H_
-#define SIMBENCH_EVALUATION_FRAMES_CAMERA_STATISTICS_H_
+#pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -100,5 +98,3 @@ StampStatistics stamp_statistics(std::span<const StampedFrame> frames,
 double difference_ms(std::int64_t a_ns, std::int64_t b_ns);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FRAMES_CAMERA_STATISTICS_H_

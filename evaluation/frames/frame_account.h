@@ -13,8 +13,7 @@
 //   print(account.delivered, account.lost);
 //
 // Complexity: O(n). Source: docs/reference/d455.md section 1.
-#ifndef SIMBENCH_EVALUATION_FRAMES_FRAME_ACCOUNT_H_
-#define SIMBENCH_EVALUATION_FRAMES_FRAME_ACCOUNT_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -59,5 +58,3 @@ std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool coun
 std::optional<double> stream_period_ms(std::span<const StampedFrame> frames);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FRAMES_FRAME_ACCOUNT_H_

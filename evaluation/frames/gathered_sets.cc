@@ -1,7 +1,6 @@
 #include "evaluation/frames/gathered_sets.h"
 
 #include <span>
-#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/scoring/pipeline_scorer.h"

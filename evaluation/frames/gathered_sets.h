@@ -10,8 +10,7 @@
 //
 // Errors: RecordingFailed, what the source throws. Complexity: that of the two algorithms. Memory:
 // 16 bytes a frame, and those of the sets.
-#ifndef SIMBENCH_EVALUATION_FRAMES_GATHERED_SETS_H_
-#define SIMBENCH_EVALUATION_FRAMES_GATHERED_SETS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -59,5 +58,3 @@ struct StampedStream {
 StampStatistics stamp_statistics(const StampedStream& stamped);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FRAMES_GATHERED_SETS_H_

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <span>
 #include <tuple>
 
 #include "algorithms/device_time/unwrap.h"

@@ -15,8 +15,7 @@
 // Errors: RecordingFailed where no camera has a frame period, by which frames are matched.
 // Complexity: O(n log n) in the frames; memory: 12 bytes a frame beside the streams.
 // Source: docs/design.md section 2.
-#ifndef SIMBENCH_EVALUATION_FRAMES_STREAM_SOURCE_H_
-#define SIMBENCH_EVALUATION_FRAMES_STREAM_SOURCE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -68,5 +67,3 @@ class StreamSource final : public RecordingSource {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_FRAMES_STREAM_SOURCE_H_

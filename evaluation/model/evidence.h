@@ -13,8 +13,7 @@
 //
 //   for (const StageEvidence& stage : model_evidence()) print(stage.stage, stage.why);
 //   for (const ModelGapRow& row : model_gap(measured, simulated)) use(row.metric, row.ks);
-#ifndef SIMBENCH_EVALUATION_MODEL_EVIDENCE_H_
-#define SIMBENCH_EVALUATION_MODEL_EVIDENCE_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -91,5 +90,3 @@ struct ModelGapRow {
 std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simulated);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_MODEL_EVIDENCE_H_

@@ -48,8 +48,7 @@
 //
 //   const RareEstimate estimate = estimate_rare(rare_function, {.bound = 0.1}, nullptr);
 //   estimate.probability;  // in [estimate.low, estimate.high]
-#ifndef SIMBENCH_EVALUATION_RARE_SPLITTING_H_
-#define SIMBENCH_EVALUATION_RARE_SPLITTING_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -118,5 +117,3 @@ RareEstimate count_rare(const RareFunction& run, std::uint64_t runs,
                         const SplittingOptions& options, const Progress& progress);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RARE_SPLITTING_H_

@@ -11,8 +11,7 @@
 //   const scenarios::Scenario scenario = scenarios::load_scenario(
 //       "18cam_6host_45fps", with_ad_hoc_pipelines("18cam_6host_45fps", {}, names));
 //   choose_pipelines(scenario, names);
-#ifndef SIMBENCH_EVALUATION_RUN_AD_HOC_PIPELINES_H_
-#define SIMBENCH_EVALUATION_RUN_AD_HOC_PIPELINES_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -37,5 +36,3 @@ std::vector<scenarios::Override> with_ad_hoc_pipelines(const std::string& scenar
                                                        AdHoc allowed = AdHoc::kAllStages);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_AD_HOC_PIPELINES_H_

@@ -15,8 +15,7 @@
 //     capture.record(source);
 //     const SeedScore first = capture.score(0);
 //   }
-#ifndef SIMBENCH_EVALUATION_RUN_CAPTURE_GROUPS_H_
-#define SIMBENCH_EVALUATION_RUN_CAPTURE_GROUPS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -77,5 +76,3 @@ class SharedCapture {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_CAPTURE_GROUPS_H_

@@ -13,8 +13,7 @@
 //
 //   Results r = evaluate(scenario, [&] { return make_simulation(scenario); },
 //                        {.seeds = 32, .share_captures = true}, nullptr);
-#ifndef SIMBENCH_EVALUATION_RUN_EVALUATE_H_
-#define SIMBENCH_EVALUATION_RUN_EVALUATE_H_
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -91,5 +90,3 @@ Results evaluate_choices(const scenarios::Scenario& scenario, std::vector<Pipeli
 void check_pipelines(const scenarios::Scenario& scenario);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_EVALUATE_H_

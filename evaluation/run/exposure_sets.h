@@ -14,8 +14,7 @@
 //
 //   const ExposureSets sets = exposure_sets(scenario, choice, seed, source, /*count=*/10);
 //   sets.sets[0].cameras[17]->mid_exposure_s;
-#ifndef SIMBENCH_EVALUATION_RUN_EXPOSURE_SETS_H_
-#define SIMBENCH_EVALUATION_RUN_EXPOSURE_SETS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -54,5 +53,3 @@ ExposureSets exposure_sets(const scenarios::Scenario& scenario, const PipelineCh
                            std::uint64_t seed, RecordingSource& source, std::size_t count);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_EXPOSURE_SETS_H_

@@ -18,8 +18,7 @@
 //   std::vector<double> squares(100);
 //   bool all = run_jobs(squares.size(), {.threads = 0, .cancel = &interrupted},
 //                       [&](std::size_t job) { squares[job] = double(job) * double(job); });
-#ifndef SIMBENCH_EVALUATION_RUN_JOBS_H_
-#define SIMBENCH_EVALUATION_RUN_JOBS_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -134,5 +133,3 @@ class JobQueue {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_JOBS_H_

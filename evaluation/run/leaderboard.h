@@ -8,8 +8,7 @@
 // differ in gathering alone share one error; they are in order of recall, then precision.
 //
 //   for (const Board& board : leaderboard(results)) board.online.front().row->pipeline;
-#ifndef SIMBENCH_EVALUATION_RUN_LEADERBOARD_H_
-#define SIMBENCH_EVALUATION_RUN_LEADERBOARD_H_
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -47,5 +46,3 @@ std::vector<Board> leaderboard(const Results& results);
 Series paired_ratio(const Series& numerator, const Series& denominator);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_LEADERBOARD_H_

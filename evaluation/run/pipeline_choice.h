@@ -14,13 +14,11 @@
 //     PipelineScorer scorer(scorer_setup(scenario, choice));
 //     const SeedScore score = score_run(source, choice, /*seed=*/1, scorer, scorer);
 //   }
-#ifndef SIMBENCH_EVALUATION_RUN_PIPELINE_CHOICE_H_
-#define SIMBENCH_EVALUATION_RUN_PIPELINE_CHOICE_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -113,5 +111,3 @@ SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::
                     PipelineScorer& scorer, RecordingSink& sink, WorldObserver* observer = nullptr);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_PIPELINE_CHOICE_H_

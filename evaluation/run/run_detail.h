@@ -16,8 +16,7 @@
 //   const auto source = sim::make_simulation(scenario);
 //   const RunDetail run = run_detail(scenario, choice, /*seed=*/1, *source);
 //   run.cameras[0].frames.front().global_ms;
-#ifndef SIMBENCH_EVALUATION_RUN_RUN_DETAIL_H_
-#define SIMBENCH_EVALUATION_RUN_RUN_DETAIL_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -124,5 +123,3 @@ RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& 
                      std::uint64_t seed, RecordingSource& source);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_RUN_RUN_DETAIL_H_

@@ -29,8 +29,7 @@
 //   scores.add(frame, truth);              // each frame of the scored stream
 //   scores.add(AlignmentReport{.camera = 3, .aligned = true});
 //   scores.add_to(seed_score);
-#ifndef SIMBENCH_EVALUATION_SCORING_ALIGNMENT_SCORES_H_
-#define SIMBENCH_EVALUATION_SCORING_ALIGNMENT_SCORES_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -109,5 +108,3 @@ class AlignmentScores {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_ALIGNMENT_SCORES_H_

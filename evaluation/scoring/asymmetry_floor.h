@@ -11,8 +11,7 @@
 // Source: docs/reference/host_sync.md section 3.
 //
 //   asymmetry_floor(/*sigma_ms=*/0.01, /*hosts=*/6)->amd_ms;   // 0.0117
-#ifndef SIMBENCH_EVALUATION_SCORING_ASYMMETRY_FLOOR_H_
-#define SIMBENCH_EVALUATION_SCORING_ASYMMETRY_FLOOR_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -29,5 +28,3 @@ struct AsymmetryFloor {
 std::optional<AsymmetryFloor> asymmetry_floor(double sigma_ms, std::int64_t hosts);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_ASYMMETRY_FLOOR_H_

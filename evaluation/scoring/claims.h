@@ -5,8 +5,7 @@
 // such a draw; the fraction of seeds shows how robust the claim is. Thresholds are this project's
 // where the paper gives none, and part of each claim's text. Pipelines are paired by seed.
 // Source: docs/reference/paper.md section 11.
-#ifndef SIMBENCH_EVALUATION_SCORING_CLAIMS_H_
-#define SIMBENCH_EVALUATION_SCORING_CLAIMS_H_
+#pragma once
 
 #include <string_view>
 #include <vector>
@@ -24,5 +23,3 @@ std::vector<Claim> check_claims(const std::vector<Row>& rows, double trigger_rat
 bool needs_offline_amd(std::string_view pipeline);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_CLAIMS_H_

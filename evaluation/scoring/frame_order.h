@@ -16,8 +16,7 @@
 //   const FramePlace place = order.place(record, truth, frame.sensor);
 //   gatherer.push_all(block.frames(), order.sets(Nanoseconds(0)));
 //   order.add_to(seed_score);
-#ifndef SIMBENCH_EVALUATION_SCORING_FRAME_ORDER_H_
-#define SIMBENCH_EVALUATION_SCORING_FRAME_ORDER_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -133,5 +132,3 @@ class UnknownOrder final {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_FRAME_ORDER_H_

@@ -11,8 +11,7 @@
 //   kept.add(block);
 //   bank.at(3).learn(kept.samples(3));
 //   kept.replay([&](FrameBlock& again) { use(again); });
-#ifndef SIMBENCH_EVALUATION_SCORING_KEPT_FRAMES_H_
-#define SIMBENCH_EVALUATION_SCORING_KEPT_FRAMES_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -126,5 +125,3 @@ class KeptFrames {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_KEPT_FRAMES_H_

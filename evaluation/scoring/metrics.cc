@@ -1,7 +1,6 @@
 #include "evaluation/scoring/metrics.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/scoring/metric_table.h"

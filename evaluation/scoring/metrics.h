@@ -13,8 +13,7 @@
 //   for (const Metric& metric : metrics()) {
 //     if (metric.is_series()) use(metric.id, metric.series(row).median);
 //   }
-#ifndef SIMBENCH_EVALUATION_SCORING_METRICS_H_
-#define SIMBENCH_EVALUATION_SCORING_METRICS_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -247,5 +246,3 @@ inline constexpr Judged kJudgedMs = {.smallest_step = 0.001,  // the last digit 
                                      .margin = {.relative = 0.02, .absolute = 0.001}};
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_METRICS_H_

@@ -26,8 +26,7 @@
 //   PipelineScorer scorer(setup);
 //   const RecordingCost cost = source.record({.seed = 1, .pipeline = "mine"}, scorer);
 //   SeedScore score = scorer.finish();
-#ifndef SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_
-#define SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_
+#pragma once
 
 #include <functional>
 #include <memory>
@@ -82,5 +81,3 @@ class PipelineScorer final : public RecordingSink {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_

@@ -12,8 +12,7 @@
 //   if (compare_figure(claim, row).verdict == FigureVerdict::kFails) use(claim.number());
 //
 // Source: docs/design.md section 8.
-#ifndef SIMBENCH_EVALUATION_SCORING_PUBLISHED_FIGURES_H_
-#define SIMBENCH_EVALUATION_SCORING_PUBLISHED_FIGURES_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -54,5 +53,3 @@ std::vector<FigureComparison> compare_figures(std::span<const scenarios::Publish
                                               std::span<const Row> rows);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_PUBLISHED_FIGURES_H_

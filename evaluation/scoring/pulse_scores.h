@@ -13,8 +13,7 @@
 //   table.store(225, 3, global);
 //   table.store_truth(225, 3, truth);
 //   if (table.complete(0)) table.global_ns(0);   // 18 stamps of pulse 225
-#ifndef SIMBENCH_EVALUATION_SCORING_PULSE_SCORES_H_
-#define SIMBENCH_EVALUATION_SCORING_PULSE_SCORES_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -188,5 +187,3 @@ class PulseRanges {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_PULSE_SCORES_H_

@@ -12,8 +12,7 @@
 //   const std::vector<std::int64_t> stamps = {0, 1'000'000, 3'000'000};
 //   spread_ms(stamps);                                            // 3
 //   deviation_ms(stamps, MedianKind::kUpperMiddle, workspace);    // sqrt((1 + 0 + 4) / 3)
-#ifndef SIMBENCH_EVALUATION_SCORING_PULSE_SPREAD_H_
-#define SIMBENCH_EVALUATION_SCORING_PULSE_SPREAD_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -39,5 +38,3 @@ double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
 double rmdv_bound(std::size_t n, MedianKind kind);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_PULSE_SPREAD_H_

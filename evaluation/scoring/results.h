@@ -3,8 +3,7 @@
 // Definitions: docs/design.md section 8. Units in the names. A quantity that does not exist (0/0,
 // no truth, no evaluated frame, no recording) is NaN here and null in JSON; it is left out of
 // medians and bands.
-#ifndef SIMBENCH_EVALUATION_SCORING_RESULTS_H_
-#define SIMBENCH_EVALUATION_SCORING_RESULTS_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -129,5 +128,3 @@ struct Results {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_RESULTS_H_

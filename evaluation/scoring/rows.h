@@ -2,8 +2,7 @@
 //
 // A seed without a recording keeps its place, so that rows stay paired by seed: its values are NaN
 // in every series, and the row has its notes.
-#ifndef SIMBENCH_EVALUATION_SCORING_ROWS_H_
-#define SIMBENCH_EVALUATION_SCORING_ROWS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -48,5 +47,3 @@ PublishedComparison compare(const scenarios::Published& published, const Row& ro
                             const RowSetting& setting);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_ROWS_H_

@@ -6,8 +6,7 @@
 //   scorer.watch(observer);
 //   source.record(request, scorer);
 //   const SeedScore score = scorer.finish();
-#ifndef SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_
-#define SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_
+#pragma once
 
 #include <span>
 
@@ -30,5 +29,3 @@ class ScoreObserver {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_

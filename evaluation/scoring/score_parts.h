@@ -10,8 +10,7 @@
 //   parts.push_back(std::make_unique<AlignmentPart>(layout, from_ms(5000), StreamKind::kDepth));
 //   for (const auto& part : parts) part->on_event(event);
 //   for (const auto& part : parts) part->add_to(seed_score);
-#ifndef SIMBENCH_EVALUATION_SCORING_SCORE_PARTS_H_
-#define SIMBENCH_EVALUATION_SCORING_SCORE_PARTS_H_
+#pragma once
 
 #include <memory>
 #include <span>
@@ -68,5 +67,3 @@ class SecondAmd final : public ScorePart {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_SCORE_PARTS_H_

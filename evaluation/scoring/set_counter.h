@@ -12,8 +12,7 @@
 //   SetCounter sets(table);
 //   gatherer.push_all(block.frames(), sets);
 //   sets.score(seed_score);
-#ifndef SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_
-#define SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -64,5 +63,3 @@ class SetCounter final : public TimedSetSink {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_

@@ -11,8 +11,7 @@
 //   const DeviceTime sensor = stamping.unwrap(record.camera, record.sensor);
 //   stamping.stamp(block);
 //   table.shift(stamping.shift());
-#ifndef SIMBENCH_EVALUATION_SCORING_STAMPING_H_
-#define SIMBENCH_EVALUATION_SCORING_STAMPING_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -79,5 +78,3 @@ class Stamping {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_STAMPING_H_

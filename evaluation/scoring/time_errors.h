@@ -12,8 +12,7 @@
 //   TimeErrors errors(/*hosts=*/6);
 //   errors.add(/*host=*/1, -0.003);
 //   errors.add_to(seed_score);
-#ifndef SIMBENCH_EVALUATION_SCORING_TIME_ERRORS_H_
-#define SIMBENCH_EVALUATION_SCORING_TIME_ERRORS_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -79,5 +78,3 @@ class TimeErrors {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_TIME_ERRORS_H_

@@ -16,8 +16,7 @@
 //   if (scores.part_of(frame) == UnverifiedScores::Part::kEvaluated) tag = kUnknownPulse;
 //   gatherer.push_all(block.frames(), scores);
 //   scores.score(seed_score);
-#ifndef SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_
-#define SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -76,5 +75,3 @@ class UnverifiedScores final : public TimedSetSink {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_

@@ -39,8 +39,7 @@
 //
 //   const ClockLog log = read_clock_log("/var/log/chrony/tracking.log");
 //   const double first_s = log.points.front().error_s;
-#ifndef SIMBENCH_EVALUATION_STABILITY_CLOCK_LOG_H_
-#define SIMBENCH_EVALUATION_STABILITY_CLOCK_LOG_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -80,5 +79,3 @@ ClockLog parse_clock_log(std::string_view text, const std::string& path,
                          const ClockLogOptions& options = {});
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STABILITY_CLOCK_LOG_H_

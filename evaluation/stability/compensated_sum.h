@@ -6,8 +6,7 @@
 //   sum.add(1);
 //   sum.add(-1e16);
 //   const double one = sum.value();
-#ifndef SIMBENCH_EVALUATION_STABILITY_COMPENSATED_SUM_H_
-#define SIMBENCH_EVALUATION_STABILITY_COMPENSATED_SUM_H_
+#pragma once
 
 namespace simbench::evaluation {
 
@@ -28,5 +27,3 @@ class CompensatedSum {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STABILITY_COMPENSATED_SUM_H_

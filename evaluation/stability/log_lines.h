@@ -4,8 +4,7 @@
 //   const LogPlace place{path, 1};
 //   const std::unique_ptr<LogLines> lines = lines_of_format("0,1e-6", place, {});
 //   const std::optional<LogLine> point = lines->read("0,1e-6", place);
-#ifndef SIMBENCH_EVALUATION_STABILITY_LOG_LINES_H_
-#define SIMBENCH_EVALUATION_STABILITY_LOG_LINES_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -67,5 +66,3 @@ enum class ChronyLog : std::uint8_t { kNone, kTracking, kStatistics, kOther };
 ChronyLog chrony_log_of(std::string_view line);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STABILITY_LOG_LINES_H_

@@ -12,8 +12,7 @@
 //
 //   const LogStability found = stability_of_log(read_clock_log("tracking.log"), {});
 //   const double worst_ms = found.stability.time_error.max_te_ms;
-#ifndef SIMBENCH_EVALUATION_STABILITY_LOG_STABILITY_H_
-#define SIMBENCH_EVALUATION_STABILITY_LOG_STABILITY_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -54,5 +53,3 @@ struct LogStability {
 LogStability stability_of_log(const ClockLog& log, const LogStabilityOptions& options);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STABILITY_LOG_STABILITY_H_

@@ -32,8 +32,7 @@
 //   TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0, .x_s = {0, 1e-6, 3e-6}}}};
 //   const Stability stability = stability_of(series);
 //   const std::optional<StabilityPoint> mtie = deviation_at(series, Deviation::kMtie, 2);
-#ifndef SIMBENCH_EVALUATION_STABILITY_STABILITY_H_
-#define SIMBENCH_EVALUATION_STABILITY_STABILITY_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -107,5 +106,3 @@ struct Stability : StabilityCurves {
 Stability stability_of(const TimeErrorSeries& series);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STABILITY_STABILITY_H_

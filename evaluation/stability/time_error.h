@@ -8,8 +8,7 @@
 //   const std::optional<double> offset = remove_frequency_offset(series);
 //   const TimeErrorSummary size = time_error_of(series);
 //   const std::vector<TimeErrorStep> steps = steps_of(series);
-#ifndef SIMBENCH_EVALUATION_STABILITY_TIME_ERROR_H_
-#define SIMBENCH_EVALUATION_STABILITY_TIME_ERROR_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -75,5 +74,3 @@ struct TimeErrorSummary {
 TimeErrorSummary time_error_of(const TimeErrorSeries& series);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STABILITY_TIME_ERROR_H_

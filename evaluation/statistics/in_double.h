@@ -2,8 +2,7 @@
 // and its tables of constants do not start under valgrind.
 //
 //   const InDouble policy;   // the last parameter of each of its functions and distributions
-#ifndef SIMBENCH_EVALUATION_STATISTICS_IN_DOUBLE_H_
-#define SIMBENCH_EVALUATION_STATISTICS_IN_DOUBLE_H_
+#pragma once
 
 #include <boost/math/policies/policy.hpp>
 
@@ -12,5 +11,3 @@ namespace simbench::evaluation {
 using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STATISTICS_IN_DOUBLE_H_

@@ -25,8 +25,7 @@
 //
 //   const std::vector<PairedComparison> all = compare_together({{pair_up(before, after), {}}});
 //   if (all[0].verdict == Verdict::kBetter) print(all[0].ratio.value);
-#ifndef SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
-#define SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -124,5 +123,3 @@ struct HolmDecision {
 std::vector<HolmDecision> holm(const std::vector<double>& p);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_

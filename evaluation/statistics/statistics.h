@@ -7,8 +7,7 @@
 //   const Series series = make_series({1, 2, 4});
 //   seeds_for(series.values, 0.05);      // so many put the median within 5 % in 95 % of studies
 //   ks_distance({1, 2, 3}, {2, 3, 4});   // 1/3
-#ifndef SIMBENCH_EVALUATION_STATISTICS_STATISTICS_H_
-#define SIMBENCH_EVALUATION_STATISTICS_STATISTICS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -138,5 +137,3 @@ double ks_probability(std::size_t n, std::size_t m, double distance);
 double ks_critical_distance(std::size_t n, std::size_t m);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STATISTICS_STATISTICS_H_

@@ -24,8 +24,7 @@
 //
 //   const SubsetMeans means({{1.5, 1.2}, {1.4, 1.3}}, 14);
 //   if (means.p() <= 0.05) print(means.difference(0.05).low, means.difference(0.05).high);
-#ifndef SIMBENCH_EVALUATION_STATISTICS_SUBSET_MEANS_H_
-#define SIMBENCH_EVALUATION_STATISTICS_SUBSET_MEANS_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -72,5 +71,3 @@ class SubsetMeans {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_STATISTICS_SUBSET_MEANS_H_

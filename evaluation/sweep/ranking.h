@@ -12,8 +12,7 @@
 //
 //   const Ranking ranking = rank(plan, rows, evaluation::metric("absolute_error_ms"));
 //   for (const RankingFlip& flip : ranking.flips) print(flip.before, flip.last, flip.first);
-#ifndef SIMBENCH_EVALUATION_SWEEP_RANKING_H_
-#define SIMBENCH_EVALUATION_SWEEP_RANKING_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -47,5 +46,3 @@ struct Ranking {
 Ranking rank(const SweepPlan& plan, const std::vector<ResponseRow>& rows, const Metric& metric);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SWEEP_RANKING_H_

@@ -21,8 +21,7 @@
 //   const SweepPlan plan = make_plan(request);
 //   check_points(plan, request, 0);                    // throws before anything has run
 //   for (std::size_t run = 0; run < plan.runs(); ++run) use(plan.run(run));
-#ifndef SIMBENCH_EVALUATION_SWEEP_SWEEP_PLAN_H_
-#define SIMBENCH_EVALUATION_SWEEP_SWEEP_PLAN_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -105,5 +104,3 @@ std::vector<std::string> check_points(const SweepPlan& plan, const SweepRequest&
                                       unsigned threads);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SWEEP_SWEEP_PLAN_H_

@@ -4,8 +4,7 @@
 // The text is for the log of finished runs and for other machines: the cells of the run's line in
 // sweep.csv, a semicolon, and the mean clock error of every host. Numbers are the shortest that
 // read back as the same double, so the text loses nothing.
-#ifndef SIMBENCH_EVALUATION_SWEEP_SWEEP_SCORE_H_
-#define SIMBENCH_EVALUATION_SWEEP_SWEEP_SCORE_H_
+#pragma once
 
 #include <cstddef>
 #include <optional>
@@ -59,5 +58,3 @@ struct ResponseRow {
 std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<SweepScore>& scores);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SWEEP_SWEEP_SCORE_H_

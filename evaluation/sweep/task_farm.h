@@ -15,8 +15,7 @@
 //       scores[run] = score_of(text, plan.kind);              // evaluation/sweep/sweep_score.h
 //     });
 //   });
-#ifndef SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
-#define SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -100,5 +99,3 @@ class SweepTasks {
 TaskWorkerFactory sweep_workers(WorldFactory make_world, ClockWorldFactory make_clocks);
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_

@@ -19,8 +19,7 @@
 //   auto camera = driver.open("018322071234");
 //   camera->configure({.sync_mode = scenarios::SyncMode::kGenlock, ...});
 //   camera->start([&](const CameraFrame& frame) { ... }, [&](const CameraEvent& event) { ... });
-#ifndef SIMBENCH_HARDWARE_CAMERA_CAMERA_H_
-#define SIMBENCH_HARDWARE_CAMERA_CAMERA_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -132,5 +131,3 @@ class CameraDriver {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CAMERA_CAMERA_H_

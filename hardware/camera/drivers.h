@@ -13,8 +13,7 @@
 //
 //   const auto cameras = make_camera_driver(rig, me);
 //   Node node(context, settings, clock, *cameras, make_pipeline, log);
-#ifndef SIMBENCH_HARDWARE_CAMERA_DRIVERS_H_
-#define SIMBENCH_HARDWARE_CAMERA_DRIVERS_H_
+#pragma once
 
 #include <memory>
 
@@ -27,5 +26,3 @@ namespace simbench::hardware {
 std::unique_ptr<CameraDriver> make_camera_driver(const Rig& rig, PeerId host);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CAMERA_DRIVERS_H_

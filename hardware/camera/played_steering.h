@@ -19,8 +19,7 @@
 //   steering.pass(7);
 //   steering.control(FrameControlKind::kAdjustFrame, from_ms(2));
 //   const Nanoseconds moved = steering.shift(8);
-#ifndef SIMBENCH_HARDWARE_CAMERA_PLAYED_STEERING_H_
-#define SIMBENCH_HARDWARE_CAMERA_PLAYED_STEERING_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -60,5 +59,3 @@ class PlayedSteering {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CAMERA_PLAYED_STEERING_H_

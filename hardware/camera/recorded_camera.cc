@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +20,7 @@
 #include "hardware/camera/played_steering.h"
 #include "hardware/camera/stream_watch.h"
 #include "hardware/descriptor.h"
+#include "recording/number_in.h"
 
 namespace simbench::hardware {
 namespace {
@@ -71,10 +71,9 @@ TriggerFile read_trigger(const std::string& path) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) {
     text.remove_suffix(1);
   }
-  std::int64_t ns = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), ns);
-  if (error == std::errc() && stop == text.data() + text.size() && ns >= 0) {
-    result.zero = MonotonicTime(Nanoseconds(ns));
+  const auto ns = number_in<std::int64_t>(text);
+  if (ns && *ns >= 0) {
+    result.zero = MonotonicTime(Nanoseconds(*ns));
   } else {
     for (const char c : text) result.content += c >= 0x20 && c < 0x7f ? c : '?';
   }

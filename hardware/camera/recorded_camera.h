@@ -35,8 +35,7 @@
 //   const std::vector<RigCamera> cameras = {{.serial = "left", .recording = "monday#ntp/1"}};
 //   RecordedCameraDriver driver(cameras);
 //   auto camera = driver.open("left");
-#ifndef SIMBENCH_HARDWARE_CAMERA_RECORDED_CAMERA_H_
-#define SIMBENCH_HARDWARE_CAMERA_RECORDED_CAMERA_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -70,5 +69,3 @@ class RecordedCameraDriver final : public CameraDriver {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CAMERA_RECORDED_CAMERA_H_

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "bags/recorded_files.h"
 #include "hardware/camera/camera.h"
+#include "recording/number_in.h"
 #include "recording/recording_folder.h"
 
 namespace simbench::hardware {
@@ -28,11 +28,8 @@ std::size_t chosen_camera(const RigCamera& camera, const std::string& recording,
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   if (camera.recorded_camera.empty() && !names.empty()) return 0;
-  std::size_t number = 0;
-  const auto [stop, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc() && stop == name.data() + name.size() && number < names.size()) {
-    return number;
-  }
+  const auto number = number_in<std::size_t>(name);
+  if (number && *number < names.size()) return *number;
   throw CameraError(camera.serial,
                     fmt::format("{}: found recorded_camera '{}', allowed {} or a number below {}",
                                 recording, name, fmt::join(names, ", "), names.size()));

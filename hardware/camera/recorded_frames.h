@@ -14,8 +14,7 @@
 // Errors: CameraError that names the camera: an unreadable recording, an unknown capture or camera
 // (the message lists the known ones), no frame of the camera, frames with and without truth.
 // Complexity: linear in the recording.
-#ifndef SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
-#define SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -57,5 +56,3 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_played_cameras(
     const std::string& recording, const std::vector<RigCamera>& wanted);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_

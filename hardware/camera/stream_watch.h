@@ -19,8 +19,7 @@
 //   watch.start(monotonic_now());
 //   watch.on_frame(frame, report);       // every frame
 //   watch.check(monotonic_now(), report);  // now and then, at least twice a second
-#ifndef SIMBENCH_HARDWARE_CAMERA_STREAM_WATCH_H_
-#define SIMBENCH_HARDWARE_CAMERA_STREAM_WATCH_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -73,5 +72,3 @@ class StreamWatch {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CAMERA_STREAM_WATCH_H_

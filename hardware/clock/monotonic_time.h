@@ -5,8 +5,7 @@
 // share this clock, so the truth of the real-network experiment is known.
 //
 // Source: clock_gettime(2), prctl(2).
-#ifndef SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
-#define SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
+#pragma once
 
 #include <sys/prctl.h>
 
@@ -74,5 +73,3 @@ PairedReading paired_reading(const Clock& clock, const Monotonic& monotonic, int
 
 }  // namespace hardware
 }  // namespace simbench
-
-#endif  // SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_

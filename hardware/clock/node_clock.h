@@ -17,8 +17,7 @@
 //
 //   clock.observe([&](const ClockAdjustment& adjustment) { journal.write(adjustment); });
 //   HostTime received = clock.system_at(kernel_stamp);
-#ifndef SIMBENCH_HARDWARE_CLOCK_NODE_CLOCK_H_
-#define SIMBENCH_HARDWARE_CLOCK_NODE_CLOCK_H_
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -75,5 +74,3 @@ class NodeClock : public HostClock {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CLOCK_NODE_CLOCK_H_

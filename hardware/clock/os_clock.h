@@ -19,8 +19,7 @@
 // Source: adjtimex(2); kernel/time/ntp.c (the frequency is part of both clocks' rate).
 //
 //   auto clock = make_os_clock(context, kernel_clock_calls(), {.host = 3, .log = log_line});
-#ifndef SIMBENCH_HARDWARE_CLOCK_OS_CLOCK_H_
-#define SIMBENCH_HARDWARE_CLOCK_OS_CLOCK_H_
+#pragma once
 
 #include <sys/timex.h>
 
@@ -166,5 +165,3 @@ class OsClock final : public NodeClock {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CLOCK_OS_CLOCK_H_

@@ -14,8 +14,7 @@
 //   SoftwareClock skewed(context, {.host = 3,
 //                                  .oscillator = {monotonic_now(), SteadyTime{}, 30},
 //                                  .offset = from_ms(-300)});
-#ifndef SIMBENCH_HARDWARE_CLOCK_SOFTWARE_CLOCK_H_
-#define SIMBENCH_HARDWARE_CLOCK_SOFTWARE_CLOCK_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -101,5 +100,3 @@ class SoftwareClock : public NodeClock {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CLOCK_SOFTWARE_CLOCK_H_

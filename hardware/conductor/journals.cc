@@ -1,6 +1,5 @@
 #include "hardware/conductor/journals.h"
 
-#include <algorithm>
 #include <queue>
 #include <utility>
 

@@ -7,8 +7,7 @@
 //
 // A line that is no event is counted and left out (damaged()). Memory: the events. Complexity of
 // the merge: n log h.
-#ifndef SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_
-#define SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -54,5 +53,3 @@ class HostJournal {
 void play_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_

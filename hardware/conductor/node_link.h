@@ -13,8 +13,7 @@
 //
 //   NodeLink link(context, rig.hosts[3], key, [](const NodeAnswer& notice) { ... });
 //   nlohmann::json hello = co_await link.ask("hello", {}, std::chrono::seconds(3));
-#ifndef SIMBENCH_HARDWARE_CONDUCTOR_NODE_LINK_H_
-#define SIMBENCH_HARDWARE_CONDUCTOR_NODE_LINK_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
@@ -65,5 +64,3 @@ class NodeLink {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CONDUCTOR_NODE_LINK_H_

@@ -1,7 +1,6 @@
 // One session on a rig, step by step, as a coroutine. RigSource runs the context and rethrows the
 // coroutine's exception. One thread.
-#ifndef SIMBENCH_HARDWARE_CONDUCTOR_RIG_SESSION_H_
-#define SIMBENCH_HARDWARE_CONDUCTOR_RIG_SESSION_H_
+#pragma once
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
@@ -126,5 +125,3 @@ class RigSession {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CONDUCTOR_RIG_SESSION_H_

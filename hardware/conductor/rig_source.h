@@ -26,8 +26,7 @@
 //
 //   RigSource source(rig, key, scenario, settings);
 //   source.record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = sync.get()}, sink);
-#ifndef SIMBENCH_HARDWARE_CONDUCTOR_RIG_SOURCE_H_
-#define SIMBENCH_HARDWARE_CONDUCTOR_RIG_SOURCE_H_
+#pragma once
 
 #include <functional>
 #include <string>
@@ -82,5 +81,3 @@ class RigSource final : public RecordingSource {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CONDUCTOR_RIG_SOURCE_H_

@@ -8,8 +8,7 @@
 //
 //   TriggerSwitch trigger(context, rig.trigger, prompt);
 //   co_await trigger.turn(true);
-#ifndef SIMBENCH_HARDWARE_CONDUCTOR_TRIGGER_SWITCH_H_
-#define SIMBENCH_HARDWARE_CONDUCTOR_TRIGGER_SWITCH_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -49,5 +48,3 @@ class TriggerSwitch {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_CONDUCTOR_TRIGGER_SWITCH_H_

@@ -8,8 +8,7 @@
 //
 //   ChildProcess node({.program = "/proc/self/exe", .arguments = {"node"}, .log = "node0.log"});
 //   std::string line = node.read_line(deadline);  // "node host0: listening on ..."
-#ifndef SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_
-#define SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -64,5 +63,3 @@ class ChildProcess {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_

@@ -23,8 +23,7 @@
 //   RigSource source(rig.conductor(), rig.key(), scenario, {});
 //   source.record(request, sink);
 //   MonotonicTime zero = rig.trigger_zero().value();
-#ifndef SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_
-#define SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -107,5 +106,3 @@ class ExperimentRig {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_

@@ -25,12 +25,10 @@
 // Errors: SandboxError.
 //
 // Source: namespaces(7), veth(4), rtnetlink(7), netdevice(7).
-#ifndef SIMBENCH_HARDWARE_EXPERIMENT_NETWORK_SANDBOX_H_
-#define SIMBENCH_HARDWARE_EXPERIMENT_NETWORK_SANDBOX_H_
+#pragma once
 
 #include <sys/types.h>
 
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -68,5 +66,3 @@ class NetworkSandbox {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_EXPERIMENT_NETWORK_SANDBOX_H_

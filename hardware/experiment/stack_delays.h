@@ -22,8 +22,7 @@
 //
 //   NetworkSandbox::enter();
 //   StackDelays idle = measure_stack_delays({.messages = 6000});
-#ifndef SIMBENCH_HARDWARE_EXPERIMENT_STACK_DELAYS_H_
-#define SIMBENCH_HARDWARE_EXPERIMENT_STACK_DELAYS_H_
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -47,5 +46,3 @@ struct StackDelays {
 StackDelays measure_stack_delays(const StackDelaySettings& settings);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_EXPERIMENT_STACK_DELAYS_H_

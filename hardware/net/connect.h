@@ -1,8 +1,7 @@
 // Addresses, and TCP connections by a deadline: resolves a name and tries each of its addresses.
 //
 //   auto socket = co_await connect_socket(context.get_executor(), "host3", 47110, deadline);
-#ifndef SIMBENCH_HARDWARE_NET_CONNECT_H_
-#define SIMBENCH_HARDWARE_NET_CONNECT_H_
+#pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -26,5 +25,3 @@ Task<boost::asio::ip::tcp::socket> connect_socket(boost::asio::any_io_executor e
 boost::asio::ip::address resolved_now(const std::string& address);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_CONNECT_H_

@@ -10,8 +10,7 @@
 //
 // The first twelve bytes are protected by the seal. Keys come from the session of the two hosts'
 // stream, one for each direction. Pure; any bytes are safe to parse.
-#ifndef SIMBENCH_HARDWARE_NET_DATAGRAM_H_
-#define SIMBENCH_HARDWARE_NET_DATAGRAM_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -116,5 +115,3 @@ class DatagramSession {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_DATAGRAM_H_

@@ -7,8 +7,7 @@
 //   socket.bind({address, 47110}, error);
 //   socket.send(id, bytes, peer);
 //   const std::optional<MonotonicTime> left = co_await socket.left(id, deadline);
-#ifndef SIMBENCH_HARDWARE_NET_DATAGRAM_SOCKET_H_
-#define SIMBENCH_HARDWARE_NET_DATAGRAM_SOCKET_H_
+#pragma once
 
 #include <array>
 #include <boost/asio/io_context.hpp>
@@ -69,5 +68,3 @@ class DatagramSocket {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_DATAGRAM_SOCKET_H_

@@ -12,8 +12,7 @@
 // the datagram, both counted from the request for stamps.
 //
 // Source: the kernel's Documentation/networking/timestamping.rst.
-#ifndef SIMBENCH_HARDWARE_NET_KERNEL_STAMPS_H_
-#define SIMBENCH_HARDWARE_NET_KERNEL_STAMPS_H_
+#pragma once
 
 #include <sys/socket.h>
 
@@ -89,5 +88,3 @@ class TransmitLog {
 bool take_transmit_stamps(int socket, TransmitLog& log);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_KERNEL_STAMPS_H_

@@ -9,8 +9,7 @@
 //   newcomers.greet(std::move(socket), [&](std::unique_ptr<SecureStream> stream) {
 //     if (stream) admit(std::move(stream));
 //   });
-#ifndef SIMBENCH_HARDWARE_NET_NEWCOMERS_H_
-#define SIMBENCH_HARDWARE_NET_NEWCOMERS_H_
+#pragma once
 
 #include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/io_context.hpp>
@@ -63,5 +62,3 @@ class Newcomers {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_NEWCOMERS_H_

@@ -9,8 +9,7 @@
 //   while (messages.empty()) {
 //     if (!co_await notice.wait(deadline)) co_return std::nullopt;
 //   }
-#ifndef SIMBENCH_HARDWARE_NET_NOTICE_H_
-#define SIMBENCH_HARDWARE_NET_NOTICE_H_
+#pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -67,5 +66,3 @@ class Inbox {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_NOTICE_H_

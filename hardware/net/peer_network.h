@@ -22,8 +22,7 @@
 //   network.on_conductor([&](std::unique_ptr<SecureStream> stream) { ... });
 //   network.start();
 //   MessageChannel& channel = network.channel(2, Transport::kDatagram);
-#ifndef SIMBENCH_HARDWARE_NET_PEER_NETWORK_H_
-#define SIMBENCH_HARDWARE_NET_PEER_NETWORK_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
@@ -87,5 +86,3 @@ class PeerNetwork {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_PEER_NETWORK_H_

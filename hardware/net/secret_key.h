@@ -10,8 +10,7 @@
 //
 //   SecretKey key = SecretKey::from_file("rig.key");
 //   SecretKey::create_file("rig.key");        // simbench keygen
-#ifndef SIMBENCH_HARDWARE_NET_SECRET_KEY_H_
-#define SIMBENCH_HARDWARE_NET_SECRET_KEY_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -44,5 +43,3 @@ class SecretKey {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_SECRET_KEY_H_

@@ -20,8 +20,7 @@
 //       co_await SecureStream::connect(context, "10.0.0.3", port, key, me, deadline);
 //   co_await stream->send(bytes);
 //   StreamMessage message = co_await stream->receive(deadline);
-#ifndef SIMBENCH_HARDWARE_NET_SECURE_STREAM_H_
-#define SIMBENCH_HARDWARE_NET_SECURE_STREAM_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
@@ -110,5 +109,3 @@ class SecureStream {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_SECURE_STREAM_H_

@@ -3,8 +3,7 @@
 // SourceBuckets has a fixed number of buckets for all sources, so that a flood from one source
 // spends its own tokens and those of the few that share its bucket. Pass port 0 for connections,
 // whose port means nothing.
-#ifndef SIMBENCH_HARDWARE_NET_TOKEN_BUCKET_H_
-#define SIMBENCH_HARDWARE_NET_TOKEN_BUCKET_H_
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -53,5 +52,3 @@ class SourceBuckets {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_TOKEN_BUCKET_H_

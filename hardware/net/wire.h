@@ -26,8 +26,7 @@
 // the clear and protected by the seal.
 //
 // Any bytes are safe to parse.
-#ifndef SIMBENCH_HARDWARE_NET_WIRE_H_
-#define SIMBENCH_HARDWARE_NET_WIRE_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -123,5 +122,3 @@ std::optional<std::uint16_t> hello_version(std::span<const std::byte, kHelloStar
 Hello read_hello(std::span<const std::byte, kHelloBytes> bytes);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NET_WIRE_H_

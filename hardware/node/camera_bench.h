@@ -18,8 +18,7 @@
 //   co_await bench.start(feed);
 //   co_await bench.stop();
 //   feed->drain();   // now all frames and events have been handed over
-#ifndef SIMBENCH_HARDWARE_NODE_CAMERA_BENCH_H_
-#define SIMBENCH_HARDWARE_NODE_CAMERA_BENCH_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -117,5 +116,3 @@ class CameraBench {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_CAMERA_BENCH_H_

@@ -11,8 +11,7 @@
 //
 //   auto connection = std::make_shared<ConductorConnection>(context, std::move(stream), handler);
 //   co_await connection->serve();    // returns why it ended
-#ifndef SIMBENCH_HARDWARE_NODE_CONDUCTOR_CONNECTION_H_
-#define SIMBENCH_HARDWARE_NODE_CONDUCTOR_CONNECTION_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <deque>
@@ -69,5 +68,3 @@ class ConductorConnection : public std::enable_shared_from_this<ConductorConnect
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_CONDUCTOR_CONNECTION_H_

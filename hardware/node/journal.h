@@ -18,8 +18,7 @@
 //   journal.write(FrameEvent{record, std::nullopt});
 //   journal.note("camera 018322071234: unplugged");
 //   std::optional<JournalChunk> chunk = read_journal(folder, "0123456789abcdef", 0);
-#ifndef SIMBENCH_HARDWARE_NODE_JOURNAL_H_
-#define SIMBENCH_HARDWARE_NODE_JOURNAL_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -101,5 +100,3 @@ std::optional<std::string> note_of_line(std::string_view line);
 std::string note_line(std::string_view text);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_JOURNAL_H_

@@ -17,8 +17,7 @@
 //   Node node(context, settings, clock, cameras, make_pipeline, log);
 //   node.start();
 //   context.run();
-#ifndef SIMBENCH_HARDWARE_NODE_NODE_H_
-#define SIMBENCH_HARDWARE_NODE_NODE_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -75,5 +74,3 @@ class Node {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_NODE_H_

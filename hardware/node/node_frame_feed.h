@@ -5,8 +5,7 @@
 //
 //   NodeFrameFeed frames(context, clock);
 //   frames.deliver({.camera = 3, .counter = 1});
-#ifndef SIMBENCH_HARDWARE_NODE_NODE_FRAME_FEED_H_
-#define SIMBENCH_HARDWARE_NODE_NODE_FRAME_FEED_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -35,5 +34,3 @@ class NodeFrameFeed final : public FrameFeed {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_NODE_FRAME_FEED_H_

@@ -16,8 +16,7 @@
 //                                      .slave = {{"/usr/sbin/chronyd", "-d", "-f", "client.conf"}},
 //                                      .files = {{"client.conf", "server {master} iburst"}}},
 //                         .shim = "/usr/lib/simbench/libsimbench_shim.so"});
-#ifndef SIMBENCH_HARDWARE_NODE_NODE_PROGRAMS_H_
-#define SIMBENCH_HARDWARE_NODE_NODE_PROGRAMS_H_
+#pragma once
 
 #include <map>
 #include <optional>
@@ -56,5 +55,3 @@ class NodePrograms final : public HostSync {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_NODE_PROGRAMS_H_

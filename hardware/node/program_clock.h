@@ -15,8 +15,7 @@
 //     boost::asio::co_spawn(network, clock.run(), boost::asio::detached);
 //     const ProgramClock::Answer answer = clock.answer(processes::ChildRequest{});
 //   }
-#ifndef SIMBENCH_HARDWARE_NODE_PROGRAM_CLOCK_H_
-#define SIMBENCH_HARDWARE_NODE_PROGRAM_CLOCK_H_
+#pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -64,5 +63,3 @@ class ProgramClock {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_PROGRAM_CLOCK_H_

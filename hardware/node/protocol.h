@@ -45,8 +45,7 @@
 // the node.
 //
 // Errors: ProtocolError for any other bytes. Any bytes are safe to parse.
-#ifndef SIMBENCH_HARDWARE_NODE_PROTOCOL_H_
-#define SIMBENCH_HARDWARE_NODE_PROTOCOL_H_
+#pragma once
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -89,5 +88,3 @@ NodeAnswer parse_answer(std::span<const std::byte> message);
 bool is_session_id(const std::string& text);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_PROTOCOL_H_

@@ -7,8 +7,7 @@
 //
 //   RealFrameControl control({context, clock, host}, 3, camera.steering());
 //   const FrameControlReply reply = co_await control.adjust_frame(from_ms(2));
-#ifndef SIMBENCH_HARDWARE_NODE_REAL_FRAME_CONTROL_H_
-#define SIMBENCH_HARDWARE_NODE_REAL_FRAME_CONTROL_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
@@ -53,5 +52,3 @@ class RealFrameControl final : public FrameControl {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_REAL_FRAME_CONTROL_H_

@@ -12,8 +12,7 @@
 //   RealHost host(context, 3, clock, network,
 //                 [&](const RecordingEvent& event) { journal.write(event); });
 //   boost::asio::co_spawn(context, host_sync.run_slave(host, 0), boost::asio::detached);
-#ifndef SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
-#define SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -97,5 +96,3 @@ class RealHost final : public Host {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_REAL_HOST_H_

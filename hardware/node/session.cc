@@ -8,7 +8,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <ctime>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "hardware/net/notice.h"

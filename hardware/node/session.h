@@ -17,8 +17,7 @@
 //   const auto session = std::make_shared<Session>(world, std::move(plan));
 //   session->synchronise("slave");
 //   co_await session->end("its conductor has everything");
-#ifndef SIMBENCH_HARDWARE_NODE_SESSION_H_
-#define SIMBENCH_HARDWARE_NODE_SESSION_H_
+#pragma once
 
 #include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/io_context.hpp>
@@ -141,5 +140,3 @@ class Session : public std::enable_shared_from_this<Session> {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_NODE_SESSION_H_

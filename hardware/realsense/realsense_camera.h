@@ -18,8 +18,7 @@
 //   RealsenseCamera camera(device);
 //   camera.configure(settings);
 //   camera.start(on_frame, on_event);
-#ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_CAMERA_H_
-#define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_CAMERA_H_
+#pragma once
 
 #include <librealsense2/rs.hpp>
 #include <memory>
@@ -70,5 +69,3 @@ class RealsenseCamera : public Camera {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_REALSENSE_REALSENSE_CAMERA_H_

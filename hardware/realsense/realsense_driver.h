@@ -10,8 +10,7 @@
 //
 //   RealsenseDriver driver;
 //   auto camera = driver.open("018322071234");
-#ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_DRIVER_H_
-#define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_DRIVER_H_
+#pragma once
 
 #include <librealsense2/rs.hpp>
 #include <memory>
@@ -39,5 +38,3 @@ class RealsenseDriver final : public CameraDriver {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_REALSENSE_REALSENSE_DRIVER_H_

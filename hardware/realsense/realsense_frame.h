@@ -11,8 +11,7 @@
 //    0 (of the RSUSB backend) and values not within two seconds before the arrival are discarded.
 //
 // Errors: rs2::error, for the caller to catch. Source: docs/reference/d455.md section 1.
-#ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_FRAME_H_
-#define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_FRAME_H_
+#pragma once
 
 #include <librealsense2/rs.hpp>
 #include <string_view>
@@ -36,5 +35,3 @@ struct ReadFrame {
 ReadFrame read_frame(const rs2::frame& frame, const FrameInstant& arrival, int exposure_unit_us);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_REALSENSE_REALSENSE_FRAME_H_

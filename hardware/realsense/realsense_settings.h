@@ -15,8 +15,7 @@
 //   auto sensors = choose_sensors(device, serial, settings);
 //   apply_settings(device, sensors, info, settings);
 //   guarded(serial, "starting the depth sensor", [&] { sensor.start(callback); });
-#ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_SETTINGS_H_
-#define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_SETTINGS_H_
+#pragma once
 
 #include <fmt/format.h>
 
@@ -53,5 +52,3 @@ auto guarded(const std::string& serial, const std::string& doing, Call call) {
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_REALSENSE_REALSENSE_SETTINGS_H_

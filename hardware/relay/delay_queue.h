@@ -9,8 +9,7 @@
 //
 //   DelayQueue queue(context);
 //   bool taken = queue.add(at, bytes, [](Bytes message) { ... });
-#ifndef SIMBENCH_HARDWARE_RELAY_DELAY_QUEUE_H_
-#define SIMBENCH_HARDWARE_RELAY_DELAY_QUEUE_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -70,5 +69,3 @@ class DelayQueue {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_RELAY_DELAY_QUEUE_H_

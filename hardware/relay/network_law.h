@@ -18,8 +18,7 @@
 //
 //   NetworkLaw law(scenario.network, seed, 0, 3);
 //   for (MonotonicTime at : law.datagram(received)) send_at(at);
-#ifndef SIMBENCH_HARDWARE_RELAY_NETWORK_LAW_H_
-#define SIMBENCH_HARDWARE_RELAY_NETWORK_LAW_H_
+#pragma once
 
 #include <boost/container/static_vector.hpp>
 #include <cstdint>
@@ -79,5 +78,3 @@ class NetworkLaw {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_RELAY_NETWORK_LAW_H_

@@ -24,8 +24,7 @@
 //   Relay relay(context, {.nodes = rigs, .scenario = &scenario, .seed = 1});
 //   context.run();   // until relay.stop()
 //   std::string json = statistics_json(relay.statistics());
-#ifndef SIMBENCH_HARDWARE_RELAY_RELAY_H_
-#define SIMBENCH_HARDWARE_RELAY_RELAY_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
@@ -83,5 +82,3 @@ class Relay {
 std::string statistics_json(const RelayStatistics& statistics);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_RELAY_RELAY_H_

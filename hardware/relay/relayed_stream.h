@@ -15,8 +15,7 @@
 //
 //   auto stream = std::make_shared<RelayedStream>(queue, forward_law, backward_law, std::move(a));
 //   stream->start(endpoint_of_node_j, [] { ++broken; });
-#ifndef SIMBENCH_HARDWARE_RELAY_RELAYED_STREAM_H_
-#define SIMBENCH_HARDWARE_RELAY_RELAYED_STREAM_H_
+#pragma once
 
 #include <boost/asio/ip/tcp.hpp>
 #include <cstddef>
@@ -90,5 +89,3 @@ class RelayedStream : public std::enable_shared_from_this<RelayedStream> {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_RELAY_RELAYED_STREAM_H_

@@ -14,7 +14,6 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "hardware/descriptor.h"
 #include "hardware/net/kernel_stamps.h"

@@ -14,8 +14,7 @@
 // Errors: RelayError from the constructor: no such wire, or no right to open it.
 //
 //   Wires wires(context, queue, {.wires = {"wire0", "wire1"}, .scenario = &scenario, .seed = 1});
-#ifndef SIMBENCH_HARDWARE_RELAY_WIRES_H_
-#define SIMBENCH_HARDWARE_RELAY_WIRES_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
@@ -66,5 +65,3 @@ class Wires {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_RELAY_WIRES_H_

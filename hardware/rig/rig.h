@@ -24,8 +24,7 @@
 //
 // Errors: scenarios::InputError, "FILE:LINE: /pointer: found ..., allowed ...": no JSON, unknown or
 // missing members, a repeated host name or serial, an impossible name or address.
-#ifndef SIMBENCH_HARDWARE_RIG_RIG_H_
-#define SIMBENCH_HARDWARE_RIG_RIG_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -87,5 +86,3 @@ std::string_view rig_schema_text();
 void check_rig_is_guarded(const Rig& rig, bool has_key);
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_HARDWARE_RIG_RIG_H_

@@ -66,21 +66,18 @@ def request_of(
 def _stages(pipeline: Pipeline, request: _simbench.RunRequest) -> Dict[str, Any]:
     """A pipeline by its stages, as scenarios have it: those that it names, the others of its base."""
     known = _simbench.pipelines_of(request.scenario, request.sets)
-    base = pipeline.base or known[0][0]
-    for name, host_sync, capture_alignment, device_time, gathering in known:
-        if name == base:
-            stages = {
-                "name": pipeline.name,
-                "host_sync": pipeline.host_sync or host_sync,
-                "device_time": pipeline.device_time or device_time,
-                "gathering": pipeline.gathering or gathering,
-            }
-            if pipeline.capture_alignment is not None:
-                capture_alignment = pipeline.capture_alignment
-            if capture_alignment:
-                stages["capture_alignment"] = capture_alignment
-            return stages
-    names = ", ".join(name for name, *_ in known)
+    base = pipeline.base or known[0]["name"]
+    for stages in known:
+        if stages["name"] != base:
+            continue
+        for stage, may_be_absent in _simbench.stages().items():
+            algorithm = getattr(pipeline, stage)
+            if algorithm:
+                stages[stage] = algorithm
+            elif algorithm == "" and may_be_absent:
+                stages.pop(stage, None)
+        return {**stages, "name": pipeline.name}
+    names = ", ".join(each["name"] for each in known)
     raise InputError(f"pipeline {pipeline.name}: base: found {base!r}, allowed: {names}")
 
 

@@ -12,10 +12,9 @@ from .errors import MissingPackage
 
 #: Columns of words; all others are numbers.
 _WORDS = frozenset(
-    "pipeline host_sync capture_alignment device_time gathering scenario metric measure unit "
-    "published_figures ground_truth verified notes changed camera stream pipeline_a pipeline_b "
-    "verdict metric_id a b kind".split()
-)
+    "pipeline scenario metric measure unit published_figures ground_truth verified notes changed "
+    "camera stream pipeline_a pipeline_b verdict metric_id a b kind".split()
+) | frozenset(_simbench.stages())
 _COUNTS = frozenset(_simbench.counts()) | {"seed", "host", "scored_seeds"}
 
 

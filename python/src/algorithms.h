@@ -3,8 +3,7 @@
 // of one of simbench's own.
 //
 //   register_python_device_time(definition);
-#ifndef SIMBENCH_PYTHON_SRC_ALGORITHMS_H_
-#define SIMBENCH_PYTHON_SRC_ALGORITHMS_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
@@ -16,5 +15,3 @@ void register_python_host_sync(const pybind11::dict& definition);
 void register_python_capture_alignment(const pybind11::dict& definition);
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_ALGORITHMS_H_

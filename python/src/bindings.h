@@ -2,8 +2,7 @@
 //
 // The public interface is written in Python (python/simbench); these functions and classes are what
 // it stands on. They convert and call what the commands call, and compute nothing themselves.
-#ifndef SIMBENCH_PYTHON_SRC_BINDINGS_H_
-#define SIMBENCH_PYTHON_SRC_BINDINGS_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
@@ -14,5 +13,3 @@ void bind_recordings(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
 void bind_rows(pybind11::module_& module);
 void bind_scenarios(pybind11::module_& module);
-
-#endif  // SIMBENCH_PYTHON_SRC_BINDINGS_H_

@@ -6,18 +6,14 @@
 //   const HostRequest request = host_request(tuple, port);   // with the GIL
 //   const HostAnswer answer = co_await answered(request, port);
 //   const py::object value = python_value(answer);           // with the GIL
-#ifndef SIMBENCH_PYTHON_SRC_HOST_REQUESTS_H_
-#define SIMBENCH_PYTHON_SRC_HOST_REQUESTS_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <variant>
 
@@ -100,5 +96,3 @@ Task<void> say_done(Host& host, PeerId server);
 void bind_host_port(py::module_& module);
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_HOST_REQUESTS_H_

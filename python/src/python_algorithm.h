@@ -15,12 +15,10 @@
 //   const py::gil_scoped_acquire gil;
 //   const py::object made = make_instance(algorithm, parameters);
 //   if (result == nullptr) throw_python_failure(algorithm);
-#ifndef SIMBENCH_PYTHON_SRC_PYTHON_ALGORITHM_H_
-#define SIMBENCH_PYTHON_SRC_PYTHON_ALGORITHM_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
-#include <cstdint>
 #include <exception>
 #include <memory>
 #include <string>
@@ -81,5 +79,3 @@ bool has_trait(const PythonAlgorithm& algorithm, const char* name);
 std::string shown(PyObject* object);
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_PYTHON_ALGORITHM_H_

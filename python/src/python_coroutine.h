@@ -9,8 +9,7 @@
 //     const PortOfRun port(host, {0});
 //     co_await drive(algorithm, port.get(), parameters, std::nullopt);
 //   }
-#ifndef SIMBENCH_PYTHON_SRC_PYTHON_COROUTINE_H_
-#define SIMBENCH_PYTHON_SRC_PYTHON_COROUTINE_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
@@ -47,5 +46,3 @@ Task<void> drive(AlgorithmDefinition algorithm, SharedPort port, Parameters para
                  std::optional<std::uint32_t> number);
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_PYTHON_COROUTINE_H_

@@ -7,15 +7,12 @@
 //   SampleRecord& record = renewed<SampleRecord>(reference);   // with the GIL
 //   record.sensor_ns = 5;
 //   PyObject_CallOneArg(method, reference.get());
-#ifndef SIMBENCH_PYTHON_SRC_RECORDS_H_
-#define SIMBENCH_PYTHON_SRC_RECORDS_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
-#include <cstdint>
 #include <new>
 
-#include "algorithms/gathering/gathering.h"
 #include "python/src/python_algorithm.h"
 
 namespace simbench::python {
@@ -76,5 +73,3 @@ Record& renewed(RecordReference& reference) {
 }
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_RECORDS_H_

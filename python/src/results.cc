@@ -1,4 +1,5 @@
 // Runs, archives and comparisons for the package.
+
 #include "app/results.h"
 
 #include <fmt/format.h>

@@ -2,8 +2,7 @@
 //
 // Python reads them through the buffer protocol; the array keeps them alive. simbench/tables.py
 // makes a NumPy array of a buffer and its fields.
-#ifndef SIMBENCH_PYTHON_SRC_ROWS_H_
-#define SIMBENCH_PYTHON_SRC_ROWS_H_
+#pragma once
 
 #include <cstddef>
 #include <memory>
@@ -44,5 +43,3 @@ class Rows {
 };
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_ROWS_H_

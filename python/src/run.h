@@ -1,6 +1,5 @@
 // A run as Python has it: simulated now, read from an archive, or scored from a recording folder.
-#ifndef SIMBENCH_PYTHON_SRC_RUN_H_
-#define SIMBENCH_PYTHON_SRC_RUN_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -45,5 +44,3 @@ struct Run {
 };
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_RUN_H_

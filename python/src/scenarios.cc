@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/scoring/metrics.h"
 #include "python/src/bindings.h"
 #include "reports/text/plain_text.h"
@@ -32,8 +33,16 @@ py::list describe(const std::string& scenario) {
   return lines;
 }
 
-// The pipelines of a scenario with these changes: name, host_sync, capture_alignment (may be
-// empty), device_time, gathering.
+// The stages of a pipeline, in order: name and whether a pipeline may lack it.
+py::dict stages() {
+  py::dict all;
+  for (const simbench::StageInfo& stage : simbench::kPipelineStages)
+    all[stage.name] = stage.may_be_absent;
+  return all;
+}
+
+// The pipelines of a scenario with these changes: name, and the algorithm of each stage that it
+// has.
 py::list pipelines_of(const std::string& scenario,
                       const std::vector<std::pair<std::string, std::string>>& sets) {
   std::vector<simbench::scenarios::Override> overrides;
@@ -41,8 +50,13 @@ py::list pipelines_of(const std::string& scenario,
   for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
   py::list all;
   for (const auto& pipeline : simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
-    all.append(py::make_tuple(pipeline.name, pipeline.host_sync, pipeline.capture_alignment,
-                              pipeline.device_time, pipeline.gathering));
+    py::dict each;
+    each["name"] = pipeline.name;
+    for (const simbench::StageInfo& stage : simbench::kPipelineStages) {
+      const std::string& algorithm = simbench::at_stage(pipeline, stage.id);
+      if (!algorithm.empty()) each[stage.name] = algorithm;
+    }
+    all.append(each);
   }
   return all;
 }
@@ -61,6 +75,7 @@ py::list counts() {
 void bind_scenarios(pybind11::module_& module) {
   module.def("list_scenarios", &list_scenarios);
   module.def("describe", &describe);
+  module.def("stages", &stages);
   module.def("pipelines_of", &pipelines_of);
   module.def("counts", &counts);
   module.def("set_page_width", &simbench::reports::set_page_width);

@@ -8,8 +8,7 @@
 //       on_progress, [&](const evaluation::Progress& progress) {
 //         return evaluation::evaluate(scenario, make_source, options, progress);
 //       });
-#ifndef SIMBENCH_PYTHON_SRC_WORK_H_
-#define SIMBENCH_PYTHON_SRC_WORK_H_
+#pragma once
 
 #include <pybind11/pybind11.h>
 
@@ -34,5 +33,3 @@ Result watched(const pybind11::object& on_progress, const Work& work) {
 }
 
 }  // namespace simbench::python
-
-#endif  // SIMBENCH_PYTHON_SRC_WORK_H_

@@ -2,8 +2,7 @@
 //
 //   LoadedMesh scan = load_subject_mesh("scan.ply");     // notes: in millimetres, has holes
 //   file << ply_bytes(mesh);
-#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_MESH_FILE_H_
-#define SIMBENCH_RECONSTRUCTION_LIBRARIES_MESH_FILE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -35,5 +34,3 @@ std::string ply_bytes(const TriangleMesh& mesh);
 std::vector<std::uint8_t> png_bytes(const Picture& picture);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_MESH_FILE_H_

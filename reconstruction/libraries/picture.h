@@ -5,8 +5,7 @@
 // angle at which the surface is seen.
 //
 //   const Picture picture = picture_of(mesh);
-#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_PICTURE_H_
-#define SIMBENCH_RECONSTRUCTION_LIBRARIES_PICTURE_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -28,5 +27,3 @@ struct Picture {
 Picture picture_of(const TriangleMesh& mesh);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_PICTURE_H_

@@ -7,8 +7,7 @@
 //
 //   const QuietErrors quiet;
 //   ... in any thread: { const QuietErrors::Scope scope; library_call(); }
-#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_QUIET_ERRORS_H_
-#define SIMBENCH_RECONSTRUCTION_LIBRARIES_QUIET_ERRORS_H_
+#pragma once
 
 #include <iostream>
 #include <streambuf>
@@ -60,5 +59,3 @@ class QuietErrors {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_QUIET_ERRORS_H_

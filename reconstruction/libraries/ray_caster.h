@@ -7,8 +7,7 @@
 //   RayCaster caster(subject.parts());
 //   caster.pose(subject.poses(seconds));
 //   const SeenDepth seen = caster.see(camera.intrinsics, camera.world_from_camera);
-#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_RAY_CASTER_H_
-#define SIMBENCH_RECONSTRUCTION_LIBRARIES_RAY_CASTER_H_
+#pragma once
 
 #include <Eigen/Geometry>
 #include <memory>
@@ -48,5 +47,3 @@ class RayCaster {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_RAY_CASTER_H_

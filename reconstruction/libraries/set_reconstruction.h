@@ -10,12 +10,10 @@
 //   ErrorStatistics errors;
 //   const auto surface = studio.reconstruct(set, errors);
 //   if (surface) surface->by_vertex.mean_m(0);
-#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_SET_RECONSTRUCTION_H_
-#define SIMBENCH_RECONSTRUCTION_LIBRARIES_SET_RECONSTRUCTION_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "evaluation/run/exposure_sets.h"
 #include "reconstruction/error_statistics.h"
@@ -56,5 +54,3 @@ class SetReconstruction {
 };
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_SET_RECONSTRUCTION_H_

@@ -12,8 +12,7 @@
 //   OrientedPoints points;
 //   add_points(measured, camera, 0.005, points);   // for each camera
 //   const TriangleMesh mesh = poisson_surface(points);
-#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_SURFACE_H_
-#define SIMBENCH_RECONSTRUCTION_LIBRARIES_SURFACE_H_
+#pragma once
 
 #include <Eigen/Core>
 #include <vector>
@@ -41,5 +40,3 @@ inline constexpr std::size_t kFewestPoints = 100;
 TriangleMesh poisson_surface(const OrientedPoints& points);
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_SURFACE_H_

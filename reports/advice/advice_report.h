@@ -7,8 +7,7 @@
 // "cameras_per_host", "parts": [name], "price_low_eur", "price_high_eur", "settled", "pipelines":
 // [{"pipeline", "met", "seeds", "probability", "low", "high", "margin", "frames_dropped",
 // "medians": {id: value}}]}]}; the pipelines from the best on.
-#ifndef SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
-#define SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -45,5 +44,3 @@ Block rare_block(const std::string& heading, const std::vector<RareResult>& resu
 Json rare_json(const std::vector<RareResult>& results);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_

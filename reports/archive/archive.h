@@ -16,8 +16,7 @@
 //
 //   const Archive monday = read_archive("results/monday");
 //   for (const evaluation::Row& row : monday.results.rows) use(row.amd_ms.values);
-#ifndef SIMBENCH_REPORTS_ARCHIVE_ARCHIVE_H_
-#define SIMBENCH_REPORTS_ARCHIVE_ARCHIVE_H_
+#pragma once
 
 #include <chrono>
 #include <string>
@@ -89,5 +88,3 @@ Archive read_archive(const std::string& path);
 void read_seed_details(Archive& archive);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_ARCHIVE_ARCHIVE_H_

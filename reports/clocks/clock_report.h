@@ -21,8 +21,7 @@
 //    "warnings", "performance"}
 //
 // What it means: evaluation/clock_run/clock_score.h, evaluation/stability/stability.h.
-#ifndef SIMBENCH_REPORTS_CLOCKS_CLOCK_REPORT_H_
-#define SIMBENCH_REPORTS_CLOCKS_CLOCK_REPORT_H_
+#pragma once
 
 #include <ostream>
 #include <string>
@@ -69,5 +68,3 @@ void write_clock_archive(OutputFolder& output, const evaluation::ClockResults& r
                          const scenarios::Scenario& scenario, const Provenance& provenance);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_CLOCKS_CLOCK_REPORT_H_

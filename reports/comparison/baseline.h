@@ -21,8 +21,7 @@
 // or written by a newer simbench; OutputError for one that cannot be written.
 //
 //   write_baseline(make_baseline(read_archive("results")), "reports/baselines/mine.json");
-#ifndef SIMBENCH_REPORTS_COMPARISON_BASELINE_H_
-#define SIMBENCH_REPORTS_COMPARISON_BASELINE_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -67,5 +66,3 @@ void write_baseline(const Baseline& baseline, const std::string& path);
 Baseline read_baseline(const std::string& path);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_COMPARISON_BASELINE_H_

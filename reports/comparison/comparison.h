@@ -13,8 +13,7 @@
 //
 //   const Archive monday = read_archive("monday");
 //   std::cout << plain(comparison_document(compare_with_baseline(monday, "ntp_last_set", {})));
-#ifndef SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
-#define SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -105,5 +104,3 @@ std::string comparison_json(const Comparison& comparison);
 std::string comparison_csv(const Comparison& comparison);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_

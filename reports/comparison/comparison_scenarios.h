@@ -6,10 +6,8 @@
 //
 //   const ScenarioDifferences d = compare_scenarios(a.scenario_json, b.scenario_json);
 //   if (!d.world.empty()) refuse(d.world);
-#ifndef SIMBENCH_REPORTS_COMPARISON_COMPARISON_SCENARIOS_H_
-#define SIMBENCH_REPORTS_COMPARISON_COMPARISON_SCENARIOS_H_
+#pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -73,5 +71,3 @@ SeedPairing pair_by_seed(const SeedRange& a, const SeedRange& b);
 SeedPairing pair_by_index(const SeedRange& a, const SeedRange& b);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_COMPARISON_COMPARISON_SCENARIOS_H_

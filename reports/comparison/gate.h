@@ -19,14 +19,12 @@
 //
 //   const GateReport report = gate(read_archive("results"), read_baseline("mine.json"), {});
 //   if (!report.passed()) std::cout << gate_text(report);
-#ifndef SIMBENCH_REPORTS_COMPARISON_GATE_H_
-#define SIMBENCH_REPORTS_COMPARISON_GATE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "evaluation/statistics/paired.h"
@@ -104,5 +102,3 @@ std::string gate_json(const GateReport& report);
 std::string gate_junit(const GateReport& report);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_COMPARISON_GATE_H_

@@ -8,8 +8,7 @@
 // sees one of them and switches. Units stand in the labels of the axes. NaN in y is a gap.
 //
 //   const FigureEntry* entry = find_figure("fig8");   // "synchronisation"
-#ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_H_
-#define SIMBENCH_REPORTS_FIGURES_FIGURE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -154,5 +153,3 @@ const FigureEntry& figure_named(std::string_view name);
 std::string figure_csv(const Figure& figure);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_FIGURES_FIGURE_H_

@@ -1,6 +1,5 @@
 // Shared parts of the makers of figures.
-#ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
-#define SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -76,5 +75,3 @@ std::string truth_note(const evaluation::RunDetail& run);
 FigureSeries thinned(FigureSeries series, std::size_t most);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_

@@ -7,8 +7,7 @@
 // dark rectangles, the fainter the smaller its share.
 //
 //   draw(figure, PlotFormat::kPdf, "fig8.pdf");
-#ifndef SIMBENCH_REPORTS_FIGURES_GNUPLOT_H_
-#define SIMBENCH_REPORTS_FIGURES_GNUPLOT_H_
+#pragma once
 
 #include <cstdint>
 #include <filesystem>
@@ -32,5 +31,3 @@ void draw(const Figure& figure, PlotFormat format, const std::filesystem::path& 
 std::string drawn_svg(const Figure& figure);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_FIGURES_GNUPLOT_H_

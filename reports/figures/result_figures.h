@@ -3,8 +3,7 @@
 //   Archive archive = read_archive("results/monday");
 //   read_seed_details(archive);
 //   const std::vector<Figure> figures = frame_errors(archive);
-#ifndef SIMBENCH_REPORTS_FIGURES_RESULT_FIGURES_H_
-#define SIMBENCH_REPORTS_FIGURES_RESULT_FIGURES_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -36,5 +35,3 @@ std::vector<Figure> host_order(const Archive& archive);
 Figure budget_figure(const evaluation::PipelineBudget& budget);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_FIGURES_RESULT_FIGURES_H_

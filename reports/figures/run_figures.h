@@ -6,8 +6,7 @@
 // in captures without truth, the median of the pulse's stamps.
 //
 // Series of cameras of one host share a colour where hosts are compared.
-#ifndef SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_
-#define SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_
+#pragma once
 
 #include <vector>
 
@@ -38,5 +37,3 @@ Figure gathering(const evaluation::RunDetail& run);
 std::vector<Figure> run_figures(const evaluation::RunDetail& run);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_

@@ -2,8 +2,7 @@
 //
 // Each takes the existing runs, in any order. It uses the pipelines of the paper by name, or others
 // if these are missing; the caption then states so.
-#ifndef SIMBENCH_REPORTS_FIGURES_SEED_FIGURES_H_
-#define SIMBENCH_REPORTS_FIGURES_SEED_FIGURES_H_
+#pragma once
 
 #include <span>
 #include <vector>
@@ -36,5 +35,3 @@ inline constexpr double kDisplayRateHz = 120;
 std::vector<PhotographedReading> display_readings(double start_ms, double end_ms);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_FIGURES_SEED_FIGURES_H_

@@ -2,8 +2,7 @@
 //
 //   file << diagnose_html({.diagnosis = diagnosis, .inputs = {"rig.csv"},
 //                          .command = {"simbench", "diagnose", "rig.csv"}});
-#ifndef SIMBENCH_REPORTS_PAGE_DIAGNOSE_PAGE_H_
-#define SIMBENCH_REPORTS_PAGE_DIAGNOSE_PAGE_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -21,5 +20,3 @@ struct DiagnosePage {
 std::string diagnose_html(const DiagnosePage& page);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_PAGE_DIAGNOSE_PAGE_H_

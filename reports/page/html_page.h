@@ -20,8 +20,7 @@
 //                           numbers too far apart for three bytes
 //
 // Long series are thinned without hiding an extreme (thinned() of reports/figures/figure_parts.h).
-#ifndef SIMBENCH_REPORTS_PAGE_HTML_PAGE_H_
-#define SIMBENCH_REPORTS_PAGE_HTML_PAGE_H_
+#pragma once
 
 #include <cstddef>
 #include <map>
@@ -91,5 +90,3 @@ class HtmlColumns {
 };
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_PAGE_HTML_PAGE_H_

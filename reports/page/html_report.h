@@ -12,8 +12,7 @@
 //                                            .figures = figures, .notes = {}}},
 //                              .command = {"simbench", "report", "results/monday"}};
 //   file << html_report(input);
-#ifndef SIMBENCH_REPORTS_PAGE_HTML_REPORT_H_
-#define SIMBENCH_REPORTS_PAGE_HTML_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -39,5 +38,3 @@ struct ReportInput {
 std::string html_report(const ReportInput& input);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_PAGE_HTML_REPORT_H_

@@ -7,8 +7,7 @@
 // are shown.
 //
 //   const std::string figure = overview_html(all_results, evaluation::RankedBy::kAmd);
-#ifndef SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
-#define SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -35,5 +34,3 @@ std::vector<OverviewRow> overview_rows(const evaluation::Results& results,
 std::string overview_html(const evaluation::Results& results, evaluation::RankedBy ranked_by);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_PAGE_OVERVIEW_H_

@@ -2,8 +2,7 @@
 // It depends on the plan and the results alone: equal sweeps have equal pages.
 //
 //   file << sweep_html({.plan = plan, .answer = answer, .figures = figures, .blocks = blocks});
-#ifndef SIMBENCH_REPORTS_PAGE_SWEEP_PAGE_H_
-#define SIMBENCH_REPORTS_PAGE_SWEEP_PAGE_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -25,5 +24,3 @@ struct SweepPage {
 std::string sweep_html(const SweepPage& page);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_PAGE_SWEEP_PAGE_H_

@@ -1,7 +1,6 @@
 // The page of the report and its scripts, embedded by the build (reports/embed_web.cmake): the
 // files of reports/web/, and uPlot.
-#ifndef SIMBENCH_REPORTS_PAGE_WEB_FILES_H_
-#define SIMBENCH_REPORTS_PAGE_WEB_FILES_H_
+#pragma once
 
 #include <string_view>
 
@@ -15,5 +14,3 @@ std::string_view uplot_style();
 std::string_view uplot_licence();
 
 }  // namespace simbench::reports::web
-
-#endif  // SIMBENCH_REPORTS_PAGE_WEB_FILES_H_

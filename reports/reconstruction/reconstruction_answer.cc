@@ -96,7 +96,7 @@ std::string certainty_text(const ReprojectionRow& best) {
   const std::vector<double> values = errors_by_seed(best, best);
   const std::size_t seeds = evaluation::count_of_existing(values);
   if (seeds < kFewestSeeds) {
-    return fmt::format("Uncertain: {} say little about other worlds.", counted(seeds, "seed"));
+    return fmt::format("Uncertain: {}.", few_seeds_text(seeds));
   }
   const double relative =
       evaluation::median_interval(values, static_cast<std::int64_t>(seeds)).relative;
@@ -115,7 +115,7 @@ AnswerText reconstruction_answer(const ReconstructionResults& results) {
       .lead = fmt::format("{} gives the best reconstruction of the {} that a rig can run: mean "
                           "error {} cm, its exposures {} ms apart.",
                           best.pipeline, sorted.size(), cm_text(best.mean_cm()),
-                          ms_text(best.desync_ms().median))};
+                          desync_text(best.desync_ms().median))};
   answer.add("Others", others_text(sorted));
   answer.add("Tolerance", tolerance_text(results));
   answer.add("Certainty", certainty_text(best));

@@ -140,7 +140,7 @@ std::string floor_note(const std::vector<ReprojectionRow>& rows, const StudioSub
   return fmt::format(
       "In the {} ms of {} the subject moves {} cm: that row measures calibration and depth noise, "
       "and cannot be distinguished from a perfect synchronisation.",
-      ms_text(ms), best->pipeline, cm_text(moved_cm));
+      desync_text(ms), best->pipeline, cm_text(moved_cm));
 }
 
 std::string speed_phrase(const CurvePoint& point) {
@@ -200,7 +200,7 @@ Table reconstructed_sets_table(const ReconstructionResults& results) {
       pipeline_field<ReprojectionRow>(),
       {{"median\ncm"}, [](const auto& row) { return cm_text(row.median_cm().median); }},
       {{"95 %\ncm"}, [](const auto& row) { return cm_text(row.p95_cm().median); }},
-      {{"desynchronisation\nms"}, [](const auto& row) { return ms_text(row.desync_ms()); }},
+      {{"desynchronisation\nms"}, [](const auto& row) { return desync_text(row.desync_ms()); }},
       {{"seeds without\na gathered set"},
        [](const auto& row) { return share_text(no_gathered_set_share(row)); }},
       total("sets", &SeedReprojection::sets),
@@ -319,7 +319,7 @@ FigurePanel speed_panel(const reconstruction::SpeedNeeded& needed) {
                                  [](const CurvePoint& point) { return point.speed_m_per_s > 0; });
   FigurePanel panel{
       .title = fmt::format("Reprojection error of {} ({} ms) over the subject's speed",
-                           needed.pipeline, ms_text(needed.desync_ms)),
+                           needed.pipeline, desync_text(needed.desync_ms)),
       .x_label = walks ? "walking speed, m/s" : "factor on the stated speed",
       .y_label = kErrorAxis,
       .lines = {{.label = fmt::format("published: {}", cm_text(needed.published_mean_cm)),
@@ -382,15 +382,15 @@ std::string cm_text(const evaluation::Series& series) {
   return fmt::format("{:.2f} [{:.2f}, {:.2f}]", series.median, series.p05, series.p95);
 }
 
-std::string ms_text(double ms) {
+std::string desync_text(double ms) {
   if (std::isnan(ms)) return "-";
   return fmt::format("{:.{}f}", ms, std::abs(ms) < 1 ? 3 : 1);
 }
 
-std::string ms_text(const evaluation::Series& series) {
+std::string desync_text(const evaluation::Series& series) {
   if (std::isnan(series.median)) return "-";
-  return fmt::format("{} [{}, {}]", ms_text(series.median), ms_text(series.p05),
-                     ms_text(series.p95));
+  return fmt::format("{} [{}, {}]", desync_text(series.median), desync_text(series.p05),
+                     desync_text(series.p95));
 }
 
 std::string speed_text(double speed_m_per_s, double speed_factor) {
@@ -413,13 +413,13 @@ double no_gathered_set_share(const ReprojectionRow& row) {
 
 std::string limit_text(const SyncLimit& limit) {
   if (std::isnan(limit.floor_cm)) return "-";
-  return limit.limit_ms ? ms_text(*limit.limit_ms) : fmt::format("> {:g}", limit.last_ms);
+  return limit.limit_ms ? desync_text(*limit.limit_ms) : fmt::format("> {:g}", limit.last_ms);
 }
 
 std::string speed_sentence(const reconstruction::SpeedNeeded& needed) {
   const std::string what =
       fmt::format("the published {} cm of {}, at its {} ms", cm_text(needed.published_mean_cm),
-                  needed.pipeline, ms_text(needed.desync_ms));
+                  needed.pipeline, desync_text(needed.desync_ms));
   if (needed.points.empty()) return "";
   const CurvePoint& first = needed.points.front();
   const CurvePoint& last = needed.points.back();

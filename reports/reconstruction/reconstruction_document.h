@@ -8,8 +8,7 @@
 // Medians are over seeds. Between the points of the curve values are interpolated linearly.
 //
 //   std::cout << plain(reconstruction_document(results));
-#ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
-#define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -75,8 +74,8 @@ std::string cm_text(double cm);
 // Median and band: "2.39 [1.80, 2.95]".
 std::string cm_text(const evaluation::Series& series);
 // "6.1", with more digits below a millisecond: "0.125". With a band: "6.1 [5.0, 7.2]".
-std::string ms_text(double ms);
-std::string ms_text(const evaluation::Series& series);
+std::string desync_text(double ms);
+std::string desync_text(const evaluation::Series& series);
 // "1.20 m/s", or "x 1.5" for a script without walking.
 std::string speed_text(double speed_m_per_s, double speed_factor);
 // The sum of a count over the row's seeds.
@@ -124,5 +123,3 @@ std::string reconstruction_json(const reconstruction::ReconstructionResults& res
 std::string reconstruction_csv(const reconstruction::ReconstructionResults& results);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_

@@ -46,9 +46,10 @@ std::string colour_scale() {
 }
 
 std::string picture_html(const ReconstructionPicture& picture) {
-  const std::string caption = fmt::format(
-      "{}: {} ms of desynchronisation, error {} cm ± {} cm", picture.pipeline,
-      ms_text(picture.desync_ms), cm_text(picture.errors.mean_cm), cm_text(picture.errors.std_cm));
+  const std::string caption =
+      fmt::format("{}: {} ms of desynchronisation, error {} cm ± {} cm", picture.pipeline,
+                  desync_text(picture.desync_ms), cm_text(picture.errors.mean_cm),
+                  cm_text(picture.errors.std_cm));
   return fmt::format(
       "<figure class=\"mesh\"><img src=\"data:image/png;base64,{0}\" alt=\"reconstructed mesh of "
       "{1}\"><figcaption>{1}</figcaption></figure>\n",

@@ -19,8 +19,7 @@
 //   folder.write(results, provenance);
 //
 // Errors: OutputError.
-#ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_FOLDER_H_
-#define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_FOLDER_H_
+#pragma once
 
 #include <map>
 #include <string>
@@ -68,5 +67,3 @@ class ReconstructionFolder {
 };
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_FOLDER_H_

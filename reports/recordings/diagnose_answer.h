@@ -2,8 +2,7 @@
 // which slips, how small a drift these stamps can show, and what no stamp shows.
 //
 //   document.head = paragraphs(diagnose_answer(diagnosis));
-#ifndef SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_ANSWER_H_
-#define SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_ANSWER_H_
+#pragma once
 
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/text/answer_text.h"
@@ -13,5 +12,3 @@ namespace simbench::reports {
 AnswerText diagnose_answer(const evaluation::Diagnosis& diagnosis);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_ANSWER_H_

@@ -1,10 +1,7 @@
 #include "reports/recordings/diagnose_figure.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -7,8 +7,7 @@
 // have no place in it.
 //
 //   const Figure figure = diagnose_figure(diagnosis);
-#ifndef SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_FIGURE_H_
-#define SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_FIGURE_H_
+#pragma once
 
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/figures/figure.h"
@@ -25,5 +24,3 @@ FigureSeries phase_series(const evaluation::CameraDiagnosis& camera, double peri
 FigureSeries block_medians(const FigureSeries& curve);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_FIGURE_H_

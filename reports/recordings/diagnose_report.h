@@ -17,8 +17,7 @@
 //    "findings": [{"camera", "stream", "kind", "text"}], "cannot_know": [...]}
 // rate_hz is by the host's clock, period_ms by the camera's. Definitions:
 // evaluation/diagnosis/diagnose.h.
-#ifndef SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_REPORT_H_
-#define SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -38,5 +37,3 @@ std::string diagnose_json(const evaluation::Diagnosis& diagnosis,
 const char* sync_status_text(evaluation::SyncStatus status);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_DIAGNOSE_REPORT_H_

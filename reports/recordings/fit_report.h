@@ -6,8 +6,7 @@
 // "excess_ms": [{"probability", "recorded", "simulated"}], "skew_ppm": [{"camera", "recorded":
 // {"value", "error"}, "simulated"}], "correlation": {"recorded", "simulated"}, "drop_share":
 // {"recorded", "simulated"}, "frames": {"recorded", "simulated"}}]}; what does not exist is null.
-#ifndef SIMBENCH_REPORTS_RECORDINGS_FIT_REPORT_H_
-#define SIMBENCH_REPORTS_RECORDINGS_FIT_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -29,5 +28,3 @@ std::string fit_table(const FitReport& report);
 std::string fit_json(const FitReport& report);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_FIT_REPORT_H_

@@ -20,8 +20,7 @@
 // rate_hz of a stream is by its stamps, of a topic by the log times. Definitions of clocks and
 // stamps: evaluation/frames/camera_statistics.h; of the account of frames:
 // evaluation/frames/frame_account.h.
-#ifndef SIMBENCH_REPORTS_RECORDINGS_INSPECT_REPORT_H_
-#define SIMBENCH_REPORTS_RECORDINGS_INSPECT_REPORT_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -45,5 +44,3 @@ Document inspect_document(const std::vector<Inspection>& files);
 std::string inspect_json(const std::vector<Inspection>& files);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_INSPECT_REPORT_H_

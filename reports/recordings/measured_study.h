@@ -15,8 +15,7 @@
 //   write_measured_study("relay.json", measured_study(results, "2026-11-21", "4 cores"));
 //   const MeasuredStudy study = read_measured_study("relay.json", "6node_relay");
 //   model_gap(results_of(study), simulated);
-#ifndef SIMBENCH_REPORTS_RECORDINGS_MEASURED_STUDY_H_
-#define SIMBENCH_REPORTS_RECORDINGS_MEASURED_STUDY_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -60,5 +59,3 @@ void write_measured_study(const std::string& path, const MeasuredStudy& study);
 MeasuredStudy read_measured_study(const std::string& path, const std::string& scenario);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_MEASURED_STUDY_H_

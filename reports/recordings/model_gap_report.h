@@ -11,8 +11,7 @@
 //
 //   const MeasuredStudy study = read_measured_study(path, scenario.name);
 //   std::cout << plain(model_gap_document(model_gap_report(study, simulated)));
-#ifndef SIMBENCH_REPORTS_RECORDINGS_MODEL_GAP_REPORT_H_
-#define SIMBENCH_REPORTS_RECORDINGS_MODEL_GAP_REPORT_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -39,5 +38,3 @@ Document model_gap_document(const ModelGapReport& report);
 std::string model_gap_json(const ModelGapReport& report);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_MODEL_GAP_REPORT_H_

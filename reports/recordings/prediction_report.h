@@ -8,8 +8,7 @@
 //
 //   Document document = results_document(measured, summary);
 //   document.blocks.push_back(prediction_block(measured, simulated));
-#ifndef SIMBENCH_REPORTS_RECORDINGS_PREDICTION_REPORT_H_
-#define SIMBENCH_REPORTS_RECORDINGS_PREDICTION_REPORT_H_
+#pragma once
 
 #include <cstddef>
 #include <optional>
@@ -49,5 +48,3 @@ std::string json_with_prediction(const evaluation::Results& measured,
                                  const evaluation::Results& simulated);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_PREDICTION_REPORT_H_

@@ -51,11 +51,11 @@ void write_stamps_csv(const std::vector<evaluation::StampedStream>& stamped, std
     const std::string name = csv_cell(stream.camera) + "," + csv_cell(stream.stream);
     const std::vector<StampedFrame> frames = evaluation::unwrapped(stream.frames);
     for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-      out << name << ',' << frames[frame].counter << ',' << simbench::ms_text(frames[frame].sensor)
-          << ',' << simbench::ms_text(frames[frame].arrival);
+      out << name << ',' << frames[frame].counter << ',' << ms_text(frames[frame].sensor) << ','
+          << ms_text(frames[frame].arrival);
       for (std::size_t i = begin; i < end; ++i) {
         const std::optional<GlobalTime>& stamp = stamped[i].stamps[frame];
-        out << ',' << (stamp ? simbench::ms_text(stamp->time_since_epoch()) : "");
+        out << ',' << (stamp ? ms_text(stamp->time_since_epoch()) : "");
       }
       out << '\n';
     }

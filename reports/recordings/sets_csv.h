@@ -6,8 +6,7 @@
 // `message` counts the topic's messages from 0 in the order of the file (empty where a stream's
 // metadata names no image, and for files that have no messages); the stamp is the device_time's, on
 // the host's clock.
-#ifndef SIMBENCH_REPORTS_RECORDINGS_SETS_CSV_H_
-#define SIMBENCH_REPORTS_RECORDINGS_SETS_CSV_H_
+#pragma once
 
 #include <ostream>
 #include <vector>
@@ -30,5 +29,3 @@ void write_sets_csv(const std::vector<evaluation::GatheredSet>& sets,
 void write_stamps_csv(const std::vector<evaluation::StampedStream>& stamped, std::ostream& out);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_SETS_CSV_H_

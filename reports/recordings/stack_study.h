@@ -8,8 +8,7 @@
 //
 //   write_stack_study("network_stack.json", {.date = "2021-09-14", .machine = "a desktop",
 //       .conditions = {{.name = "idle", .busy_threads = 0, .parts = {{"transmit", law}}}}});
-#ifndef SIMBENCH_REPORTS_RECORDINGS_STACK_STUDY_H_
-#define SIMBENCH_REPORTS_RECORDINGS_STACK_STUDY_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -56,5 +55,3 @@ std::string stack_study_json(const StackStudy& study);
 void write_stack_study(const std::string& path, const StackStudy& study);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_STACK_STUDY_H_

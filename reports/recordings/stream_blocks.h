@@ -2,8 +2,7 @@
 // stamps of device_time algorithms.
 //
 //   document.blocks.push_back(frames_block(recorded.streams));
-#ifndef SIMBENCH_REPORTS_RECORDINGS_STREAM_BLOCKS_H_
-#define SIMBENCH_REPORTS_RECORDINGS_STREAM_BLOCKS_H_
+#pragma once
 
 #include <vector>
 
@@ -26,5 +25,3 @@ Block stamps_block(const std::vector<evaluation::StampedStream>& stamps);
 Json stamps_json(const evaluation::StampedStream& stamped);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RECORDINGS_STREAM_BLOCKS_H_

@@ -7,8 +7,7 @@
 // "values"}]}, "absolute_error_ms", "physical_ms", "host_error_ms": {"note", "total", "algorithm",
 // "parts": [{"part", "cause", "mean", ...}]}}]}; "host_error_ms" has the note alone where it is not
 // divided, and what does not exist is null.
-#ifndef SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
-#define SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -32,5 +31,3 @@ Document budget_document(const BudgetReport& report);
 std::string budget_json(const BudgetReport& report);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_

@@ -1,11 +1,9 @@
 // Results as CSV: a header line, then one line per pipeline, frame or host. Numbers in the shortest
 // text that reads back as the same double; what does not exist is an empty cell.
-#ifndef SIMBENCH_REPORTS_RESULTS_CSV_H_
-#define SIMBENCH_REPORTS_RESULTS_CSV_H_
+#pragma once
 
 #include <ostream>
 #include <string>
-#include <string_view>
 
 #include "evaluation/scoring/results.h"
 #include "scenarios/derivation.h"
@@ -42,5 +40,3 @@ struct LineEnds {
 };
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_CSV_H_

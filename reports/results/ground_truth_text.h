@@ -1,8 +1,7 @@
 // The words of reports about the ground truth of a score and about failures in its recording.
 //
 // Results of simulations alone have none.
-#ifndef SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_
-#define SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -30,5 +29,3 @@ std::string unverified_legend(const evaluation::Results& results);
 std::vector<std::string> note_lines(const evaluation::Results& results);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_

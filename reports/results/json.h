@@ -27,8 +27,7 @@
 //    "asymmetry_floor": null or {"sigma_ms", "host_error_ms", "amd_ms"}
 //      (evaluation/scoring/asymmetry_floor.h), "warnings": [...],
 //    "performance": {"events", "events_per_second", "simulated_seconds_per_second", ...}}
-#ifndef SIMBENCH_REPORTS_RESULTS_JSON_H_
-#define SIMBENCH_REPORTS_RESULTS_JSON_H_
+#pragma once
 
 #include <span>
 #include <string>
@@ -73,5 +72,3 @@ std::vector<evaluation::FigureComparison> read_published_figures(
     const JsonNode& root, std::span<const evaluation::Row> rows);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_JSON_H_

@@ -5,8 +5,7 @@
 // [...], "offline": [...]}], whose entries are {"pipeline", "error_to_oracle", "amd_to_oracle",
 // "error_to_paper", "amd_to_paper"}, each {"median", "p05", "p95"}; null where there is no such
 // ratio.
-#ifndef SIMBENCH_REPORTS_RESULTS_LEADERBOARD_REPORT_H_
-#define SIMBENCH_REPORTS_RESULTS_LEADERBOARD_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -24,5 +23,3 @@ Document leaderboard_document(const evaluation::Results& results, const std::str
 std::string leaderboard_json(const evaluation::Results& results);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_LEADERBOARD_REPORT_H_

@@ -4,8 +4,7 @@
 //   for (const evaluation::Metric* metric : table_metrics(&TablePlaces::truth)) {
 //     use(column_of(*metric).heading, metric->value(row));
 //   }
-#ifndef SIMBENCH_REPORTS_RESULTS_METRIC_COLUMNS_H_
-#define SIMBENCH_REPORTS_RESULTS_METRIC_COLUMNS_H_
+#pragma once
 
 #include <vector>
 
@@ -54,5 +53,3 @@ class ScopedMetricColumn {
 };
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_METRIC_COLUMNS_H_

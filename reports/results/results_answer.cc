@@ -175,7 +175,7 @@ std::string uncertainty_text(const Answer& answer) {
   const std::size_t seeds =
       evaluation::count_of_existing(evaluation::ranked_series(best, answer.ranked_by).values);
   if (seeds < kFewestSeeds) {
-    parts.push_back(fmt::format("{} say little about other worlds", counted(seeds, "seed")));
+    parts.push_back(few_seeds_text(seeds));
   } else if (answer.known_within) {
     parts.push_back(fmt::format("the median of {} is known to {:.0f} %", counted(seeds, "seed"),
                                 std::ceil(100 * *answer.known_within)));

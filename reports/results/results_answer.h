@@ -4,8 +4,7 @@
 // has none.
 //
 //   const AnswerText first = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);
-#ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_
-#define SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_
+#pragma once
 
 #include <string>
 
@@ -42,5 +41,3 @@ std::string cable_sentence(const evaluation::Results& results);
 const char* ranked_name(evaluation::RankedBy ranked_by);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_

@@ -10,10 +10,8 @@
 // docs/design.md section 8.
 //
 //   std::cout << plain(results_document(results, scenario.summary));
-#ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_
-#define SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_
+#pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -92,5 +90,3 @@ Block stages_block(const Rows& rows) {
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_

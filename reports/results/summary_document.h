@@ -9,8 +9,7 @@
 //
 //   const AnswerText answer = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);
 //   std::cout << plain(summary_document(all_results, {.summary = scenario.summary}, answer));
-#ifndef SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
-#define SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -38,5 +37,3 @@ Document summary_document(const evaluation::Results& results, const SummaryOptio
 Document quiet_document(const evaluation::Results& results, const AnswerText& answer);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_

@@ -14,8 +14,7 @@
 //
 // CSV: file,format,quantity,tau_s,value,terms, a line for each value; quantities are the members of
 // the JSON that are numbers, without tau_s and terms, and its lists.
-#ifndef SIMBENCH_REPORTS_STABILITY_STABILITY_REPORT_H_
-#define SIMBENCH_REPORTS_STABILITY_STABILITY_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -39,5 +38,3 @@ void add_stability(Json& object, const evaluation::Stability& stability);
 Table stability_table(const evaluation::Stability& stability);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_STABILITY_STABILITY_REPORT_H_

@@ -165,8 +165,7 @@ class Winner {
       if (!std::isnan(relative)) widest = std::max(widest, relative);
     }
     std::string text = fewest < kFewestSeeds
-                           ? fmt::format("Uncertain: {} of a point say little about other worlds",
-                                         counted(fewest, "seed"))
+                           ? "Uncertain: " + few_seeds_text(fewest, " of a point")
                            : fmt::format("Uncertain: the medians are known to {:.0f} % or better",
                                          std::ceil(100 * widest));
     const std::size_t without = part_.plan.points() - rows_.size();

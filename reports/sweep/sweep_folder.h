@@ -19,8 +19,7 @@
 //   folder.write("sweep.csv", text);
 //
 // Not thread-safe. Errors: OutputError, whose message states the remedy; the appended runs stay.
-#ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_FOLDER_H_
-#define SIMBENCH_REPORTS_SWEEP_SWEEP_FOLDER_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -97,5 +96,3 @@ class SweepFolder {
 };
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_SWEEP_SWEEP_FOLDER_H_

@@ -1,6 +1,5 @@
 // What the blocks and figures of sweeps have in common.
-#ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_PARTS_H_
-#define SIMBENCH_REPORTS_SWEEP_SWEEP_PARTS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -41,5 +40,3 @@ FigureSeries* add_curve(FigurePanel& panel, const std::string& label, Mark mark)
 void use_log_scale_if_wide(FigurePanel& panel);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_SWEEP_SWEEP_PARTS_H_

@@ -4,8 +4,7 @@
 // error, of the hosts' clocks alone the spread.
 //
 //   document.head = paragraphs(sweep_answer(plan, rows));
-#ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
-#define SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -93,5 +92,3 @@ Figure seeds_needed_figure(const evaluation::SweepPlan& plan,
                            const std::vector<evaluation::ResponseRow>& rows);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_

@@ -4,9 +4,15 @@
 
 #include <utility>
 
+#include "recording/counted.h"
 #include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
+
+std::string few_seeds_text(std::size_t seeds, std::string_view whose) {
+  return fmt::format("{}{} {} little about other worlds", counted(seeds, "seed"), whose,
+                     seeds == 1 ? "says" : "say");
+}
 
 void AnswerText::add(std::string label, std::string text) {
   if (!text.empty()) points.push_back({std::move(label), std::move(text)});

@@ -8,11 +8,11 @@
 //   AnswerText answer{.lead = "chrony is best: 0.155 ms."};
 //   answer.add("Uncertain", "1 seed says little about other worlds.");
 //   document.head = paragraphs(answer);
-#ifndef SIMBENCH_REPORTS_TEXT_ANSWER_TEXT_H_
-#define SIMBENCH_REPORTS_TEXT_ANSWER_TEXT_H_
+#pragma once
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace simbench::reports {
@@ -20,6 +20,8 @@ namespace simbench::reports {
 // An answer says of fewer seeds that they say little about other worlds: not even from the least to
 // the largest of them do they hold the median with 95 %.
 inline constexpr std::size_t kFewestSeeds = 6;
+// "3 seeds say little about other worlds"; `whose` (" of a point") follows the seeds.
+std::string few_seeds_text(std::size_t seeds, std::string_view whose = "");
 
 struct AnswerPoint {
   std::string label;
@@ -41,5 +43,3 @@ std::vector<std::string> paragraphs(const AnswerText& answer);
 std::string html(const AnswerText& answer);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_ANSWER_TEXT_H_

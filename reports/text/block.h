@@ -17,8 +17,7 @@
 // Plain text is laid out for the page of reports/text/plain_text.h. A table wider than the page is
 // divided into parts, each with the key columns first; long prose in cells wraps. Only a word wider
 // than the page exceeds it. The others have no page.
-#ifndef SIMBENCH_REPORTS_TEXT_BLOCK_H_
-#define SIMBENCH_REPORTS_TEXT_BLOCK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -138,5 +137,3 @@ std::string html(const Block& block);
 std::string html(const std::vector<Block>& blocks);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_BLOCK_H_

@@ -3,8 +3,7 @@
 //   html_escaped("a < b & \"c\"")   "a &lt; b &amp; &quot;c&quot;", for content and attributes
 //   latex_escaped("50 %_a")         "50 \%\_a"
 //   csv_cell("a,b")                 "\"a,b\""
-#ifndef SIMBENCH_REPORTS_TEXT_ESCAPED_TEXT_H_
-#define SIMBENCH_REPORTS_TEXT_ESCAPED_TEXT_H_
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -36,5 +35,3 @@ std::string filled(std::string_view page,
                    const std::vector<std::pair<std::string_view, std::string>>& values);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_ESCAPED_TEXT_H_

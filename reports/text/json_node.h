@@ -9,8 +9,7 @@
 //   const JsonFile file = read_json_file("results.json", "write it with ...");
 //   const JsonNode root(file, file.value);
 //   const std::int64_t seeds = root["seeds"]["count"].count();
-#ifndef SIMBENCH_REPORTS_TEXT_JSON_NODE_H_
-#define SIMBENCH_REPORTS_TEXT_JSON_NODE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -77,5 +76,3 @@ Json series_json(const evaluation::Series& series);
 std::string file_text(const Json& json);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_JSON_NODE_H_

@@ -5,8 +5,7 @@
 //   metric_text(evaluation::metric("amd_ms"), 0.0031);             // "3.10 us"
 //   interval_text(evaluation::metric("amd_ms"), 0.35, 1.2);        // "[0.350, 1.20] ms"
 //   difference_text(evaluation::metric("recall"), -0.02);          // "-2.00 %"
-#ifndef SIMBENCH_REPORTS_TEXT_METRIC_TEXT_H_
-#define SIMBENCH_REPORTS_TEXT_METRIC_TEXT_H_
+#pragma once
 
 #include <string>
 
@@ -25,5 +24,3 @@ std::string interval_text(const evaluation::Metric& metric, double low, double h
 double shown_value(const evaluation::Metric& metric, double value);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_METRIC_TEXT_H_

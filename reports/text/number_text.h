@@ -1,13 +1,11 @@
 // Numbers as people read them: a sensible number of digits, "-" for a value that does not exist.
-#ifndef SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
-#define SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
 #include "evaluation/scoring/results.h"
-#include "recording/counted.h"
 
 namespace simbench::reports {
 
@@ -63,5 +61,3 @@ inline constexpr const char* kSingleCameraLegend =
 std::string capitalised(std::string text);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_

@@ -17,8 +17,7 @@
 //   output.publish();
 //
 // Errors: OutputError, whose message states the remedy.
-#ifndef SIMBENCH_REPORTS_TEXT_OUTPUT_FILE_H_
-#define SIMBENCH_REPORTS_TEXT_OUTPUT_FILE_H_
+#pragma once
 
 #include <filesystem>
 #include <fstream>
@@ -103,5 +102,3 @@ class OutputFolder {
 };
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_OUTPUT_FILE_H_

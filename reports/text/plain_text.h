@@ -12,8 +12,7 @@
 // cells wrap; a part narrows its widest columns first, as much as necessary. A single word is never
 // broken. A column that does not fit beside the keys has a part of its own, where its longest words
 // exceed it.
-#ifndef SIMBENCH_REPORTS_TEXT_PLAIN_TEXT_H_
-#define SIMBENCH_REPORTS_TEXT_PLAIN_TEXT_H_
+#pragma once
 
 #include <cstddef>
 #include <optional>
@@ -72,5 +71,3 @@ std::string fitted(std::string_view text);
 std::vector<std::string> words_in_lines(std::string_view text, std::size_t width);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_PLAIN_TEXT_H_

@@ -3,8 +3,7 @@
 //
 //   set_program_name("my_bench");                     // run_command_line() does
 //   in_this_program("see `simbench list`");           // "see `my_bench list`"
-#ifndef SIMBENCH_REPORTS_TEXT_PROGRAM_NAME_H_
-#define SIMBENCH_REPORTS_TEXT_PROGRAM_NAME_H_
+#pragma once
 
 #include <string>
 
@@ -19,5 +18,3 @@ const std::string& program_name();
 std::string in_this_program(const std::string& text);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_PROGRAM_NAME_H_

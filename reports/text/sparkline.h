@@ -7,8 +7,7 @@
 //
 //   const Sparkline amd = seeds_sparkline(row.amd_ms);
 //   cell += svg(amd);
-#ifndef SIMBENCH_REPORTS_TEXT_SPARKLINE_H_
-#define SIMBENCH_REPORTS_TEXT_SPARKLINE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -32,5 +31,3 @@ Sparkline seeds_sparkline(const evaluation::Series& series_ms);
 std::string svg(const Sparkline& sparkline);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_SPARKLINE_H_

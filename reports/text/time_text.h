@@ -2,8 +2,7 @@
 //
 //   time_text(0.0031);             // "3.10 us"
 //   time_band_text(0.35, 1.2);     // "[0.350, 1.20] ms"
-#ifndef SIMBENCH_REPORTS_TEXT_TIME_TEXT_H_
-#define SIMBENCH_REPORTS_TEXT_TIME_TEXT_H_
+#pragma once
 
 #include <string>
 
@@ -19,5 +18,3 @@ std::string tick_text(double ms);
 std::string time_band_text(double low_ms, double high_ms);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TEXT_TIME_TEXT_H_

@@ -7,8 +7,7 @@
 // thing is complete or absent.
 //
 // Units: true time (recording/true_time.h), nanoseconds.
-#ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_H_
-#define SIMBENCH_REPORTS_TIMELINE_TRACE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -145,5 +144,3 @@ void write_trace_csv(const Trace& trace, std::ostream& out);
 std::vector<std::string> trace_csv_notes(const Trace& trace);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TIMELINE_TRACE_H_

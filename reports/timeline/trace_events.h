@@ -14,11 +14,9 @@
 // sooner.
 //
 //   const TraceTimeline timeline = trace_timeline(trace);
-#ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_
-#define SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_
+#pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -83,5 +81,3 @@ struct TraceTimeline {
 TraceTimeline trace_timeline(const Trace& trace);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_

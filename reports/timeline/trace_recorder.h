@@ -8,8 +8,7 @@
 //   const Trace trace = record_trace(scenario, choice, /*seed=*/1, *source,
 //                                    {.max_events = 50'000});
 //   write_chrome_trace(trace, std::cout);
-#ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_RECORDER_H_
-#define SIMBENCH_REPORTS_TIMELINE_TRACE_RECORDER_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -122,5 +121,3 @@ Trace record_trace(const scenarios::Scenario& scenario, const evaluation::Pipeli
                    std::uint64_t seed, RecordingSource& source, const TraceOptions& options);
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_REPORTS_TIMELINE_TRACE_RECORDER_H_

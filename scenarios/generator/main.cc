@@ -254,23 +254,21 @@ class Writer {
   std::string functions_;
 };
 
-std::string as_header(const std::string& guard, const std::string& about,
-                      const std::string& includes, const std::string& content) {
-  return comment(about, "") + "#ifndef " + guard + "\n#define " + guard + "\n\n" + includes +
+std::string as_header(const std::string& about, const std::string& includes,
+                      const std::string& content) {
+  return comment(about, "") + "#pragma once\n\n" + includes +
          "\nnamespace simbench::scenarios {\n\n" + content +
-         "}  // namespace simbench::scenarios\n\n#endif  // " + guard + "\n";
+         "}  // namespace simbench::scenarios\n";
 }
 
 std::string choices_header(const Writer& writer) {
-  return as_header("SIMBENCH_SCENARIOS_SCHEMA_CHOICES_H_",
-                   "The choices of scenarios/schema.json, from which the build made this file.",
+  return as_header("The choices of scenarios/schema.json, from which the build made this file.",
                    "#include <array>\n#include <cstdint>\n\n#include \"scenarios/words.h\"\n",
                    writer.enums());
 }
 
 std::string structs_header(const Writer& writer) {
   return as_header(
-      "SIMBENCH_SCENARIOS_SCHEMA_STRUCTS_H_",
       "The structs of scenarios/schema.json, from which the build made this file. "
       "scenarios/scenario.h says what they are and has what their functions do.",
       "#include <cstdint>\n#include <map>\n#include <nlohmann/json_fwd.hpp>\n"

@@ -10,8 +10,7 @@
 //
 //   AutoExposureLoop exposure(scenario.cameras.auto_exposure, from_ms(8.0), seed, 3, camera_start);
 //   shutter.set_exposure(exposure.at(engine.now()));
-#ifndef SIMBENCH_SIM_CAMERA_AUTO_EXPOSURE_H_
-#define SIMBENCH_SIM_CAMERA_AUTO_EXPOSURE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -47,5 +46,3 @@ class AutoExposureLoop {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CAMERA_AUTO_EXPOSURE_H_

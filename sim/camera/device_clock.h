@@ -4,11 +4,9 @@
 // the device's own timing noise, rounded down to a whole microsecond.
 //
 // Source: docs/reference/d455.md section 1; docs/reference/calibration.md section 2 ("Cameras").
-#ifndef SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
-#define SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
+#pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "clocks/prefetch.h"
 #include "recording/true_time.h"
@@ -46,5 +44,3 @@ class DeviceClock {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_

@@ -23,8 +23,7 @@
 //   Shutter shutter(settings, camera_start);
 //   if (auto exposure = shutter.on_pulse(at, slot)) expose(*exposure);
 //   // and, unless next_timer() is never: call on_timer(t) at each t = next_timer().
-#ifndef SIMBENCH_SIM_CAMERA_SHUTTER_H_
-#define SIMBENCH_SIM_CAMERA_SHUTTER_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -85,5 +84,3 @@ class Shutter {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CAMERA_SHUTTER_H_

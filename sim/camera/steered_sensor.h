@@ -24,8 +24,7 @@
 //   sensor.latch({.kind = FrameControlKind::kFrameLength, .length = from_ms(33)}, TrueTime{},
 //                TrueTime{});
 //   const Exposure next = sensor.expose(from_ms(8));
-#ifndef SIMBENCH_SIM_CAMERA_STEERED_SENSOR_H_
-#define SIMBENCH_SIM_CAMERA_STEERED_SENSOR_H_
+#pragma once
 
 #include <cstdint>
 #include <deque>
@@ -100,5 +99,3 @@ class SteeredSensor {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CAMERA_STEERED_SENSOR_H_

@@ -9,8 +9,7 @@
 //
 //   const ClockInterface interface(from_ms(15.625), from_ms(4), from_ms(1));
 //   HostTime seen = interface.read(system_clock.read(now));
-#ifndef SIMBENCH_SIM_CLOCK_CLOCK_INTERFACE_H_
-#define SIMBENCH_SIM_CLOCK_CLOCK_INTERFACE_H_
+#pragma once
 
 #include <cstdint>
 
@@ -47,5 +46,3 @@ class ClockInterface {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CLOCK_CLOCK_INTERFACE_H_

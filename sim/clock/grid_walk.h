@@ -15,8 +15,7 @@
 //   double ns = walk.phase_ns(t_ns, [&](double& frequency, std::int64_t index, double sign) {
 //     return (frequency += sign * draw(index)) * step_ns;
 //   });
-#ifndef SIMBENCH_SIM_CLOCK_GRID_WALK_H_
-#define SIMBENCH_SIM_CLOCK_GRID_WALK_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -132,5 +131,3 @@ class GridWalk {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CLOCK_GRID_WALK_H_

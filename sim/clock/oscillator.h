@@ -32,8 +32,7 @@
 //
 //   const OscillatorModel oscillator(scenario.hosts.clock.oscillator, seed, "host3/oscillator");
 //   double ahead_ns = oscillator.deviation_ns(engine.now());
-#ifndef SIMBENCH_SIM_CLOCK_OSCILLATOR_H_
-#define SIMBENCH_SIM_CLOCK_OSCILLATOR_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -148,5 +147,3 @@ class OscillatorModel {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CLOCK_OSCILLATOR_H_

@@ -15,8 +15,7 @@
 //   clock.set(now, HostTime(from_ms(1000)));
 //   clock.slew(now + from_ms(5), from_ms(2), 500'000);  // 2 ms at 500 ppm: takes 4 s
 //   HostTime reading = clock.read(now + from_ms(7));
-#ifndef SIMBENCH_SIM_CLOCK_SYSTEM_CLOCK_H_
-#define SIMBENCH_SIM_CLOCK_SYSTEM_CLOCK_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -123,5 +122,3 @@ class SystemClock {
 void read_errors(std::span<SystemClock* const> clocks, TrueTime t, std::span<Nanoseconds> errors);
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CLOCK_SYSTEM_CLOCK_H_

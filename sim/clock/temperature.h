@@ -19,8 +19,7 @@
 //   const TemperatureCourse course(*scenario.hosts.temperature, seed, "host3: temperature");
 //   const double warmer_k = course.kelvin(engine.now());
 //   const double phase_ns = coefficient_ppb_per_k * course.integral_ks(engine.now());
-#ifndef SIMBENCH_SIM_CLOCK_TEMPERATURE_H_
-#define SIMBENCH_SIM_CLOCK_TEMPERATURE_H_
+#pragma once
 
 #include <cstdint>
 #include <string_view>
@@ -70,5 +69,3 @@ class TemperatureCourse {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_CLOCK_TEMPERATURE_H_

@@ -8,8 +8,7 @@
 //   CallbackSlab slab;
 //   const std::uint32_t slot = slab.emplace([&] { ++count; });
 //   slab.run(slot);
-#ifndef SIMBENCH_SIM_ENGINE_CALLBACK_SLAB_H_
-#define SIMBENCH_SIM_ENGINE_CALLBACK_SLAB_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -135,5 +134,3 @@ class CallbackSlab {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_CALLBACK_SLAB_H_

@@ -32,8 +32,7 @@
 // the engine stays usable and the event counts as executed.
 //
 // Complexity: see event_queue.h. Times: integer nanoseconds of true time.
-#ifndef SIMBENCH_SIM_ENGINE_ENGINE_H_
-#define SIMBENCH_SIM_ENGINE_ENGINE_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -169,5 +168,3 @@ class Engine {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_ENGINE_H_

@@ -3,8 +3,7 @@
 // An event is sixteen plain bytes: its time, its handler, and two numbers with a meaning of the
 // handler's own (the kind of event, one of its objects). Models schedule events instead of closures
 // on their hot paths, because an event costs no allocation and one virtual call, in two registers.
-#ifndef SIMBENCH_SIM_ENGINE_EVENT_H_
-#define SIMBENCH_SIM_ENGINE_EVENT_H_
+#pragma once
 
 #include <cstdint>
 
@@ -29,5 +28,3 @@ class EventHandler {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_EVENT_H_

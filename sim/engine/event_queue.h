@@ -9,8 +9,7 @@
 //
 // Complexity: O(log n) for few pending events, amortised O(1) for many. No allocation in steady
 // state. Reference: docs/reference/event_engine.md section 2.
-#ifndef SIMBENCH_SIM_ENGINE_EVENT_QUEUE_H_
-#define SIMBENCH_SIM_ENGINE_EVENT_QUEUE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -100,5 +99,3 @@ class EventQueue {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_EVENT_QUEUE_H_

@@ -15,8 +15,7 @@
 //
 // Complexity: amortised O(1) per entry, besides sorting runs of a few dozen entries.
 // Memory is recycled: no allocation once the largest number of pending entries has been reached.
-#ifndef SIMBENCH_SIM_ENGINE_LADDER_H_
-#define SIMBENCH_SIM_ENGINE_LADDER_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -114,5 +113,3 @@ class Ladder {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_LADDER_H_

@@ -10,8 +10,7 @@
 //   NormalProcess load(run_seed, kMessage, 3, from_ms(100));
 //   const double z = load.at(engine.now());
 //   const double share = normal_probability(z);   // uniform in (0, 1)
-#ifndef SIMBENCH_SIM_ENGINE_NORMAL_PROCESS_H_
-#define SIMBENCH_SIM_ENGINE_NORMAL_PROCESS_H_
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -61,5 +60,3 @@ class NormalProcess {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_NORMAL_PROCESS_H_

@@ -2,8 +2,7 @@
 //
 // Handler, kind and subject travel as one number, the payload: an event is moved several times on
 // its way through the queue and a word moves faster than its parts.
-#ifndef SIMBENCH_SIM_ENGINE_QUEUE_ENTRY_H_
-#define SIMBENCH_SIM_ENGINE_QUEUE_ENTRY_H_
+#pragma once
 
 #include <cstdint>
 
@@ -39,5 +38,3 @@ constexpr std::uint64_t payload_of(HandlerId handler, std::uint16_t kind, std::u
 inline bool earlier(const QueueEntry& a, const QueueEntry& b) { return a.key() < b.key(); }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_QUEUE_ENTRY_H_

@@ -21,8 +21,7 @@
 //
 //   const KeyedStreams delays = KeyedStreams(run_seed, kDelay).of(link_and_direction);
 //   RandomStream same = delays.stream(message_index);  // half of the way is gone already
-#ifndef SIMBENCH_SIM_ENGINE_RANDOM_H_
-#define SIMBENCH_SIM_ENGINE_RANDOM_H_
+#pragma once
 
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>
@@ -31,7 +30,6 @@
 #include <limits>
 #include <string_view>
 
-#include "algorithms/ports/assert.h"
 #include "laws/generators.h"
 
 namespace simbench::sim {
@@ -149,5 +147,3 @@ class RandomStream {
 inline RandomStream KeyedStreams::stream(std::uint64_t b) const { return RandomStream(of(b)); }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_RANDOM_H_

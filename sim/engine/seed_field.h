@@ -28,8 +28,7 @@
 //   field.add({.key = 8, .share = 0.5, .step = 0.3});  // half of them moved
 //   const SeedFieldScope scope(field);
 //   make_simulation(scenario)->record(request, sink);
-#ifndef SIMBENCH_SIM_ENGINE_SEED_FIELD_H_
-#define SIMBENCH_SIM_ENGINE_SEED_FIELD_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -69,5 +68,3 @@ class SeedFieldScope {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_SEED_FIELD_H_

@@ -12,8 +12,7 @@
 //   frames[id].counter = 3;
 //   engine.schedule(at, handler, kReadout, id);
 //   frames.release(id);
-#ifndef SIMBENCH_SIM_ENGINE_SLOTS_H_
-#define SIMBENCH_SIM_ENGINE_SLOTS_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -46,5 +45,3 @@ class Slots {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_SLOTS_H_

@@ -20,8 +20,7 @@
 //   while (!near.add({.time_ns = 7, .payload = 1, .sequence = 0})) near.grow();
 //   const QueueEntry first = near.first();
 //   near.pop();
-#ifndef SIMBENCH_SIM_ENGINE_TOURNAMENT_H_
-#define SIMBENCH_SIM_ENGINE_TOURNAMENT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -115,5 +114,3 @@ class Tournament {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_TOURNAMENT_H_

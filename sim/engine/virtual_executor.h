@@ -31,8 +31,7 @@
 //   VirtualContext context(engine);
 //   boost::asio::co_spawn(context, blink(context, lamp), boost::asio::detached);
 //   engine.run_until(TrueTime(std::chrono::seconds(10)));
-#ifndef SIMBENCH_SIM_ENGINE_VIRTUAL_EXECUTOR_H_
-#define SIMBENCH_SIM_ENGINE_VIRTUAL_EXECUTOR_H_
+#pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/associated_cancellation_slot.hpp>
@@ -324,5 +323,3 @@ class WaitPoint {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_ENGINE_VIRTUAL_EXECUTOR_H_

@@ -13,8 +13,7 @@
 //   Outages outages(scenario.faults);
 //   outages.start(engine.now());  // the capture begins
 //   const bool is_lost = outages.unreachable(3, engine.now());
-#ifndef SIMBENCH_SIM_FAULTS_FAULTS_H_
-#define SIMBENCH_SIM_FAULTS_FAULTS_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -84,5 +83,3 @@ class CameraFaults {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_FAULTS_FAULTS_H_

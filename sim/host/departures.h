@@ -7,8 +7,7 @@
 //   const MessageId id = co_await host.multicast().send(0xE0000181, Bytes(44));
 //   const SteadyTime until = host.steady_clock().now() + kStampTimeout;
 //   const std::optional<HostTime> left = co_await host.multicast().stamp(id, until);
-#ifndef SIMBENCH_SIM_HOST_DEPARTURES_H_
-#define SIMBENCH_SIM_HOST_DEPARTURES_H_
+#pragma once
 
 #include <cstddef>
 #include <deque>
@@ -62,5 +61,3 @@ class Departures : protected Endpoint {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_DEPARTURES_H_

@@ -11,8 +11,7 @@
 //
 //   const DriftFiles files(scenario.hosts, seed, clocks);
 //   if (const auto stored = files.read(3, engine.now())) use(stored->ppb);
-#ifndef SIMBENCH_SIM_HOST_DRIFT_FILES_H_
-#define SIMBENCH_SIM_HOST_DRIFT_FILES_H_
+#pragma once
 
 #include <cstdint>
 #include <deque>
@@ -42,5 +41,3 @@ class DriftFiles {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_DRIFT_FILES_H_

@@ -5,8 +5,7 @@
 //   supply.connect([&] { capture.catch_up(); }, [&] { expect_frame(); },
 //                  [&](std::uint32_t, const FrameCommand&) {});
 //   supply.catch_up();
-#ifndef SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
-#define SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -52,5 +51,3 @@ class FrameSupply {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_

@@ -12,8 +12,7 @@
 //
 //   NicClock nic(host);
 //   const CrossStamp stamp = co_await nic.cross_stamp();
-#ifndef SIMBENCH_SIM_HOST_HOST_CLOCKS_H_
-#define SIMBENCH_SIM_HOST_HOST_CLOCKS_H_
+#pragma once
 
 #include <algorithm>
 #include <functional>
@@ -157,5 +156,3 @@ class NicClock final : public HardwareClock {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_HOST_CLOCKS_H_

@@ -21,8 +21,7 @@
 //   hosts.report_clocks();
 //   boost::asio::co_spawn(context, host_sync.run_master(hosts.host(0), slaves),
 //                         boost::asio::detached);
-#ifndef SIMBENCH_SIM_HOST_HOST_GROUP_H_
-#define SIMBENCH_SIM_HOST_HOST_GROUP_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -96,5 +95,3 @@ class HostGroup {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_HOST_GROUP_H_

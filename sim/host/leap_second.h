@@ -8,8 +8,7 @@
 //
 //   boost::asio::co_spawn(context, take_leap_second(leap, zero, host, leaping_clock),
 //                         boost::asio::detached);
-#ifndef SIMBENCH_SIM_HOST_LEAP_SECOND_H_
-#define SIMBENCH_SIM_HOST_LEAP_SECOND_H_
+#pragma once
 
 #include "algorithms/ports/host.h"
 #include "scenarios/scenario.h"
@@ -23,5 +22,3 @@ Task<void> take_leap_second(scenarios::LeapSecond fault, HostTime zero, SimHost&
                             SystemClock& clock);
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_LEAP_SECOND_H_

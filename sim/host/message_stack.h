@@ -32,8 +32,7 @@
 //   const Nanoseconds to_card = stack.to_card(left, {direction, id});
 //   const TrueTime stamped = stack.receive(at_card, {direction, id});
 //   const TrueTime returns = stamped + stack.wake_up(stamped, {direction, id});
-#ifndef SIMBENCH_SIM_HOST_MESSAGE_STACK_H_
-#define SIMBENCH_SIM_HOST_MESSAGE_STACK_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -114,5 +113,3 @@ class MessageStack {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_MESSAGE_STACK_H_

@@ -14,8 +14,7 @@
 //
 //   SimPulseInput line(host, receiver, "pps");
 //   const std::optional<PulseStamp> stamp = co_await line.next(steady_deadline);
-#ifndef SIMBENCH_SIM_HOST_PULSE_LINES_H_
-#define SIMBENCH_SIM_HOST_PULSE_LINES_H_
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -119,5 +118,3 @@ class SimPulseInput final : public PulseInput {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_PULSE_LINES_H_

@@ -30,10 +30,8 @@
 //   const MessageId id = co_await host.multicast().send(0xE0000181, Bytes(44));
 //
 // Source: docs/reference/calibration.md section 2 (steps 1, 2 and 4); docs/design.md section 4.
-#ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
-#define SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
+#pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -104,5 +102,3 @@ class SimMulticast final : public Departures {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_SIM_CHANNEL_H_

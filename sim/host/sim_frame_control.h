@@ -12,8 +12,7 @@
 //
 //   SimFrameControl control(host, 3, scenario);
 //   const FrameControlReply reply = co_await control.adjust_frame(from_ms(2));
-#ifndef SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
-#define SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -55,5 +54,3 @@ class SimFrameControl final : public FrameControl {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_

@@ -27,8 +27,7 @@
 //                         .run_seed = 1};
 //   SimHost host(world, 3, clock, true);
 //   boost::asio::co_spawn(context, host_sync.run_slave(host, 0), boost::asio::detached);
-#ifndef SIMBENCH_SIM_HOST_SIM_HOST_H_
-#define SIMBENCH_SIM_HOST_SIM_HOST_H_
+#pragma once
 
 #include <boost/intrusive/list.hpp>
 #include <cstdint>
@@ -206,5 +205,3 @@ class SimHost final : public Host {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_HOST_SIM_HOST_H_

@@ -9,8 +9,7 @@
 //   Groups groups;
 //   groups.join(0xE0000181, 3);  // 224.0.1.129: PTP
 //   for (PeerId host : groups.members(0xE0000181)) send(host);
-#ifndef SIMBENCH_SIM_NETWORK_GROUPS_H_
-#define SIMBENCH_SIM_NETWORK_GROUPS_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -34,5 +33,3 @@ class Groups {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_GROUPS_H_

@@ -17,8 +17,7 @@
 //
 // Source: docs/reference/calibration.md section 2 ("lat()"); docs/reference/host_sync.md section 3;
 // ITU-T G.8261 appendix VI (load); Kleinrock, "Queueing Systems" vol. 1, section 5.7.
-#ifndef SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
-#define SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
+#pragma once
 
 #include <cstdint>
 
@@ -59,5 +58,3 @@ class LinkLatency {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_

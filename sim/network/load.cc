@@ -1,7 +1,6 @@
 #include "sim/network/load.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace simbench::sim {

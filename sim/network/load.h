@@ -16,8 +16,7 @@
 //
 //   HostLoad host(scenario.hosts.load_burst, seed, 3);
 //   const TrueTime noticed = arrival + host.delay(arrival, kMessage, direction, id);
-#ifndef SIMBENCH_SIM_NETWORK_LOAD_H_
-#define SIMBENCH_SIM_NETWORK_LOAD_H_
+#pragma once
 
 #include <cstdint>
 #include <string_view>
@@ -126,5 +125,3 @@ class HostLoad {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_LOAD_H_

@@ -16,8 +16,7 @@
 //   if (!due) send_ack(nagle.acknowledge());
 //   // when an acknowledgement arrives:
 //   if (auto segment = nagle.on_ack()) send(*segment);
-#ifndef SIMBENCH_SIM_NETWORK_NAGLE_H_
-#define SIMBENCH_SIM_NETWORK_NAGLE_H_
+#pragma once
 
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
@@ -81,5 +80,3 @@ class Nagle {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_NAGLE_H_

@@ -1,7 +1,6 @@
 #include "sim/network/network.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "algorithms/ports/assert.h"

@@ -44,8 +44,7 @@
 //   SimNetwork network(engine, scenario.network, seed, host_count, load, outages);
 //   PathId path = network.open(0, 3, Transport::kStream, endpoint);
 //   network.send(path, 0, std::move(bytes));  // leaves host 0 now
-#ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
-#define SIMBENCH_SIM_NETWORK_NETWORK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -250,5 +249,3 @@ class SimNetwork : private EventHandler {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_NETWORK_H_

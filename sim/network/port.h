@@ -3,8 +3,7 @@
 //   Port port;
 //   const LineRate rate(1000);  // Mbit/s
 //   const TrueTime out = port.pass(now, rate.duration(1500));
-#ifndef SIMBENCH_SIM_NETWORK_PORT_H_
-#define SIMBENCH_SIM_NETWORK_PORT_H_
+#pragma once
 
 #include <algorithm>
 
@@ -40,5 +39,3 @@ class Port {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_PORT_H_

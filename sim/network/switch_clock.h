@@ -26,8 +26,7 @@
 // pi_integral_const: 0.7 and 0.3 at an interval of 1 s).
 //
 //   if (clock.corrects(bytes)) clock.correct(bytes, {from, to, id, copy}, residence, now);
-#ifndef SIMBENCH_SIM_NETWORK_SWITCH_CLOCK_H_
-#define SIMBENCH_SIM_NETWORK_SWITCH_CLOCK_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -95,5 +94,3 @@ class SwitchClock {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_SWITCH_CLOCK_H_

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "algorithms/ports/assert.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench::sim {

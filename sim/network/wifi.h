@@ -51,12 +51,10 @@
 //
 //   WifiCell cell(engine, wifi, seed, host_count, [](std::uint32_t ticket, bool is_lost) {});
 //   cell.send({.ticket = 7, .station = 3, .is_up = true, .bytes = 100}, stream);
-#ifndef SIMBENCH_SIM_NETWORK_WIFI_H_
-#define SIMBENCH_SIM_NETWORK_WIFI_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <unordered_map>
 #include <vector>
@@ -166,5 +164,3 @@ class WifiCell : private EventHandler {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_NETWORK_WIFI_H_

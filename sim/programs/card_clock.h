@@ -16,8 +16,7 @@
 //   timex request{};
 //   request.modes = ADJ_FREQUENCY;
 //   const KernelClock::Answer answer = co_await card.adjust(request);
-#ifndef SIMBENCH_SIM_PROGRAMS_CARD_CLOCK_H_
-#define SIMBENCH_SIM_PROGRAMS_CARD_CLOCK_H_
+#pragma once
 
 #include <cstdint>
 
@@ -51,5 +50,3 @@ class CardClock {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_CARD_CLOCK_H_

@@ -13,8 +13,7 @@
 //
 //   const FoundProgram chronyd = find_program("chronyd", "/opt/packages");
 //   print(chronyd.words[0]);  // "/opt/packages/usr/sbin/chronyd"
-#ifndef SIMBENCH_SIM_PROGRAMS_FIND_PROGRAM_H_
-#define SIMBENCH_SIM_PROGRAMS_FIND_PROGRAM_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -35,5 +34,3 @@ std::string program_path(const std::string& word, const std::string& packages = 
 FoundProgram find_program(const std::string& word, const std::string& packages = "");
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_FIND_PROGRAM_H_

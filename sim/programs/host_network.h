@@ -26,8 +26,7 @@
 //   network.bind(own, {.host = 0, .port = 123});
 //   const int error = co_await network.send(own, {.host = processes::address_of(0), .port = 123},
 //                                           Bytes(48), own.departure_stamps);
-#ifndef SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
-#define SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -153,5 +152,3 @@ class HostNetwork {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_

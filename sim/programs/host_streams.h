@@ -19,8 +19,7 @@
 //   const shim::Address server{.host = 0x0A000001, .port = 80, .reserved = 0};
 //   const int error = co_await streams.connect(*stream, server);
 //   // EINPROGRESS; ready for writing when it is connected, or has failed with stream->error
-#ifndef SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
-#define SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
+#pragma once
 
 #include <algorithm>
 #include <cerrno>
@@ -138,5 +137,3 @@ class HostStreams {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_

@@ -9,8 +9,7 @@
 //   request.modes = ADJ_FREQUENCY;
 //   request.freq = 65536 * 12;  // 12 ppm
 //   const KernelClock::Answer answer = co_await kernel.adjust(request);
-#ifndef SIMBENCH_SIM_PROGRAMS_KERNEL_CLOCK_H_
-#define SIMBENCH_SIM_PROGRAMS_KERNEL_CLOCK_H_
+#pragma once
 
 #include <sys/timex.h>
 
@@ -56,5 +55,3 @@ class KernelClock {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_KERNEL_CLOCK_H_

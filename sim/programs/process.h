@@ -20,8 +20,7 @@
 //   CardClock card(host);
 //   Process process(host, network, kernel, card, {.command = {"/usr/sbin/chronyd", "-d"}}, 1);
 //   boost::asio::co_spawn(context, process.serve(), boost::asio::detached);
-#ifndef SIMBENCH_SIM_PROGRAMS_PROCESS_H_
-#define SIMBENCH_SIM_PROGRAMS_PROCESS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -141,5 +140,3 @@ class Process {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_PROCESS_H_

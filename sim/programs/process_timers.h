@@ -10,8 +10,7 @@
 //   timer.set({.left = kSecondNs, .interval = 0}, false);
 //   const std::optional<TrueTime> look = timer.next_look();
 //   const std::int64_t expirations = timer.take();
-#ifndef SIMBENCH_SIM_PROGRAMS_PROCESS_TIMERS_H_
-#define SIMBENCH_SIM_PROGRAMS_PROCESS_TIMERS_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -64,5 +63,3 @@ class ProcessTimer {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_PROCESS_TIMERS_H_

@@ -21,8 +21,7 @@
 //   print(words[0]);  // "/usr/bin/python3"
 //
 // Source: elf(5), execve(2), ld.so(8).
-#ifndef SIMBENCH_SIM_PROGRAMS_PROGRAM_FILE_H_
-#define SIMBENCH_SIM_PROGRAMS_PROGRAM_FILE_H_
+#pragma once
 
 #include <stdexcept>
 #include <string>
@@ -40,5 +39,3 @@ class ProgramError : public std::runtime_error {
 std::vector<std::string> program_command(const std::string& path);
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_PROGRAM_FILE_H_

@@ -18,12 +18,10 @@
 //                                     .files = {{"client.conf", "server {master} iburst"}}},
 //                        .shim = "/usr/lib/simbench/libsimbench_shim.so",
 //                        .hosts = 6});
-#ifndef SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_
-#define SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_
+#pragma once
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -71,5 +69,3 @@ class ProgramSync final : public HostSync {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_

@@ -6,8 +6,7 @@
 //
 //   CameraStamps stamps(scenario, camera_world, capture_start);
 //   const std::span<const FrameStamps> of_frames = stamps.of_period(3, *camera_world.period(3));
-#ifndef SIMBENCH_SIM_RIG_CAMERA_STAMPS_H_
-#define SIMBENCH_SIM_RIG_CAMERA_STAMPS_H_
+#pragma once
 
 #include <cstddef>
 #include <span>
@@ -75,5 +74,3 @@ class CameraStamps {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CAMERA_STAMPS_H_

@@ -44,8 +44,7 @@
 //
 //   CameraWorld world(scenario, seed);
 //   for (std::size_t i = 0; const CameraPeriod* period = world.period(i); ++i) use(*period);
-#ifndef SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
-#define SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -237,5 +236,3 @@ class CameraWorld {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CAMERA_WORLD_H_

@@ -15,8 +15,7 @@
 //   SimCameras cameras(scenario, seed);
 //   for (SimStream& stream : cameras.streams()) timers.push_back(stream.shutter.next_timer());
 //   std::vector<DeviceClock> clocks = device_clocks(scenario, seed, capture_start);
-#ifndef SIMBENCH_SIM_RIG_CAMERAS_H_
-#define SIMBENCH_SIM_RIG_CAMERAS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -114,5 +113,3 @@ class SimCameras {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CAMERAS_H_

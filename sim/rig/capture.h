@@ -32,12 +32,10 @@
 //   CameraStamps stamps(scenario, world, engine.now());
 //   capture.start(world, stamps, [&] { engine.stop(); });
 //   engine.run();
-#ifndef SIMBENCH_SIM_RIG_CAPTURE_H_
-#define SIMBENCH_SIM_RIG_CAPTURE_H_
+#pragma once
 
 #include <atomic>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -140,5 +138,3 @@ class Capture {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CAPTURE_H_

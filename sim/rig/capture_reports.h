@@ -7,8 +7,7 @@
 //
 //   CaptureReports reports(sink, &feeds, &sampling);
 //   Capture capture(scenario, engine, clocks, outages, reports);
-#ifndef SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
-#define SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -88,5 +87,3 @@ class CaptureReports {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_

@@ -18,8 +18,7 @@
 //   ClockPolls polls(scenario, seed, camera_faults, capture_end);
 //   std::vector<CameraPoll> ended;
 //   polls.hand_out(then, ended);  // those that end before then
-#ifndef SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
-#define SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -70,5 +69,3 @@ class ClockPolls {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CLOCK_POLLS_H_

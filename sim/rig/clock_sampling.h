@@ -16,8 +16,7 @@
 //   Capture capture(scenario, engine, clocks, outages, CaptureReports(sink, nullptr, &sampling));
 //   engine.run();
 //   sampling.finish();
-#ifndef SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_
-#define SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_
+#pragma once
 
 #include <vector>
 
@@ -57,5 +56,3 @@ class ClockSampling final : public WorldObserver {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_

@@ -1,7 +1,6 @@
 #include "sim/rig/clock_simulation.h"
 
 #include <span>
-#include <utility>
 #include <variant>
 #include <vector>
 

@@ -12,8 +12,7 @@
 //
 //   const auto source = make_clock_simulation(scenario);
 //   source->run(clock_request, clock_sink);
-#ifndef SIMBENCH_SIM_RIG_CLOCK_SIMULATION_H_
-#define SIMBENCH_SIM_RIG_CLOCK_SIMULATION_H_
+#pragma once
 
 #include <memory>
 
@@ -26,5 +25,3 @@ namespace simbench::sim {
 std::unique_ptr<ClockSource> make_clock_simulation(const scenarios::Scenario& scenario);
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_CLOCK_SIMULATION_H_

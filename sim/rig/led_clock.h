@@ -26,8 +26,7 @@
 //
 //   LedClock leds(scenario, seed, camera_world.last_exposure());
 //   if (const auto lit = leds.read(frame, kReadout)) use(lit->start, lit->end);
-#ifndef SIMBENCH_SIM_RIG_LED_CLOCK_H_
-#define SIMBENCH_SIM_RIG_LED_CLOCK_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -80,5 +79,3 @@ class LedClock {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_LED_CLOCK_H_

@@ -13,8 +13,7 @@
 //   ReferencePulses reference(TrueTime{}, from_ms(33));
 //   reference.add(TrueTime(from_ms(330)));
 //   const std::int64_t pulse = reference.pulse_of(TrueTime(from_ms(331)));   // 10
-#ifndef SIMBENCH_SIM_RIG_REFERENCE_PULSES_H_
-#define SIMBENCH_SIM_RIG_REFERENCE_PULSES_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -74,5 +73,3 @@ class ReferencePulses {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_REFERENCE_PULSES_H_

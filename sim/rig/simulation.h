@@ -17,8 +17,7 @@
 //   const auto source = make_simulation(scenario);
 //   KeptRecording recording;
 //   source->record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = &host_sync}, recording);
-#ifndef SIMBENCH_SIM_RIG_SIMULATION_H_
-#define SIMBENCH_SIM_RIG_SIMULATION_H_
+#pragma once
 
 #include <memory>
 #include <stdexcept>
@@ -41,5 +40,3 @@ std::unique_ptr<RecordingSource> make_limited_simulation(const scenarios::Scenar
                                                          const EngineLimits& limits);
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_SIMULATION_H_

@@ -5,8 +5,7 @@
 //   synchronisation.start(host_sync, [&] { start_capture(); });
 //   run_world(engine);
 //   synchronisation.check(scenario, "chrony");
-#ifndef SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
-#define SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
+#pragma once
 
 #include <fmt/format.h>
 
@@ -118,5 +117,3 @@ class SynchronisationRun {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_

@@ -17,8 +17,7 @@
 //   TriggerTree tree(scenario.trigger, 18, seed);
 //   tree.start(capture_start);
 //   if (auto pulse = tree.pulse(0)) expose(*pulse + tree.delay_to(7));   // at camera 7
-#ifndef SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
-#define SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -58,5 +57,3 @@ class TriggerTree {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_

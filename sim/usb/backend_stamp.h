@@ -23,8 +23,7 @@
 //   const SystemClock::Reading reading = system_clock.read_both(now);
 //   const SteadyTime switched_on = system_clock.steady(capture_start);
 //   const HostTime backend = stamps.stamp(system_clock, switched_on, copied, reading);
-#ifndef SIMBENCH_SIM_USB_BACKEND_STAMP_H_
-#define SIMBENCH_SIM_USB_BACKEND_STAMP_H_
+#pragma once
 
 #include <optional>
 
@@ -63,5 +62,3 @@ class BackendStamps {
 Nanoseconds through_float_ms(Nanoseconds since_boot);
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_USB_BACKEND_STAMP_H_

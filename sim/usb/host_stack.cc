@@ -1,6 +1,5 @@
 #include "sim/usb/host_stack.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "laws/normal_law.h"

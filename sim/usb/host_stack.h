@@ -20,8 +20,7 @@
 //
 // Source: docs/reference/calibration.md section 2 ("Cameras"), parameters jcam, jhost, jrho, spk,
 // spkm. Copula: Nelsen, "An Introduction to Copulas", 2006, sections 2.3 and 5.1.
-#ifndef SIMBENCH_SIM_USB_HOST_STACK_H_
-#define SIMBENCH_SIM_USB_HOST_STACK_H_
+#pragma once
 
 #include <cstdint>
 
@@ -80,5 +79,3 @@ class FrameDelays {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_SIM_USB_HOST_STACK_H_

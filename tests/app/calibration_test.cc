@@ -1,7 +1,6 @@
 // What calibrations do to the errors of calibrated device times, in simulated leaderboards.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 #include <string>
 #include <vector>

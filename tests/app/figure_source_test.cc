@@ -7,7 +7,6 @@
 #include <cmath>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "reports/figures/figure.h"

@@ -3,11 +3,9 @@
 //
 //   std::vector<RecordedStream> rig = simulated_rig("6cam_2host_30fps", 1, 2400);
 //   const std::string file = write_sdk_bag(rig.front(), folder.path());
-#ifndef SIMBENCH_TESTS_APP_RIG_BAGS_H_
-#define SIMBENCH_TESTS_APP_RIG_BAGS_H_
+#pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -67,5 +65,3 @@ inline std::string write_sdk_bag(const RecordedStream& stream, const std::string
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_APP_RIG_BAGS_H_

@@ -5,13 +5,11 @@
 //   const std::uint16_t left = mcap.channel("/left/image", "sensor_msgs/msg/Image", "cdr");
 //   mcap.message(left, 1'000, cdr_header(3, 5, "left") + pixels);
 //   put(path, mcap.close());
-#ifndef SIMBENCH_TESTS_BAGS_BAG_WRITERS_H_
-#define SIMBENCH_TESTS_BAGS_BAG_WRITERS_H_
+#pragma once
 
 #include <sqlite3.h>
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -111,5 +109,3 @@ class KeptBag final : public BagSink {
 };
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_TESTS_BAGS_BAG_WRITERS_H_

@@ -1,6 +1,5 @@
 // A file in memory, with a path like any other: for tests that write thousands.
-#ifndef SIMBENCH_TESTS_BAGS_MEMORY_FILE_H_
-#define SIMBENCH_TESTS_BAGS_MEMORY_FILE_H_
+#pragma once
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -33,5 +32,3 @@ class MemoryFile {
 };
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_TESTS_BAGS_MEMORY_FILE_H_

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-
 #include "tests/scratch_folder.h"
 
 namespace simbench::bags {

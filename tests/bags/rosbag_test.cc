@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
-#include <map>
 #include <random>
 #include <set>
 #include <sstream>

@@ -5,8 +5,7 @@
 //   const auto topic = writer.add_topic("/cam/image_raw", "sensor_msgs/Image");
 //   writer.add_message(topic, seconds(1), ros1_header(1, seconds(1), "cam") + pixels);
 //   write_file("rig.bag", writer.bag());
-#ifndef SIMBENCH_TESTS_BAGS_ROSBAG_WRITER_H_
-#define SIMBENCH_TESTS_BAGS_ROSBAG_WRITER_H_
+#pragma once
 
 #include <bzlib.h>
 #include <lz4frame.h>
@@ -20,7 +19,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "algorithms/ports/time.h"
@@ -196,5 +194,3 @@ class RosbagWriter {
 };
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_TESTS_BAGS_ROSBAG_WRITER_H_

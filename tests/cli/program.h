@@ -1,12 +1,10 @@
 // Runs the real simbench program as a user would, and keeps what it printed.
-#ifndef SIMBENCH_TESTS_CLI_PROGRAM_H_
-#define SIMBENCH_TESTS_CLI_PROGRAM_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,5 +61,3 @@ class ProgramTest : public testing::Test {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_CLI_PROGRAM_H_

@@ -1,6 +1,5 @@
 // Runs `simbench trace`, and finds events in what it wrote.
-#ifndef SIMBENCH_TESTS_CLI_TRACE_PROGRAM_H_
-#define SIMBENCH_TESTS_CLI_TRACE_PROGRAM_H_
+#pragma once
 
 #include <gmock/gmock.h>
 
@@ -73,5 +72,3 @@ class TraceCommand : public ProgramTest {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_CLI_TRACE_PROGRAM_H_

@@ -3,8 +3,7 @@
 //
 //   const std::string text = ibl_timestamps({.drift_ppm = -215});
 //   TEST(...) { SIMBENCH_SKIP_WITHOUT(kRealBody); ... }
-#ifndef SIMBENCH_TESTS_DATA_IBL_RECORDINGS_H_
-#define SIMBENCH_TESTS_DATA_IBL_RECORDINGS_H_
+#pragma once
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -99,5 +97,3 @@ inline std::string ibl_frame_data(const IblWorld& world = {}) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_DATA_IBL_RECORDINGS_H_

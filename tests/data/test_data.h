@@ -1,7 +1,6 @@
 // Where the files of tests/data are, and what is in one that is JSON; tests/data/README.md
 // describes them. A file that is absent or broken fails the test: they are part of the repository.
-#ifndef SIMBENCH_TESTS_DATA_TEST_DATA_H_
-#define SIMBENCH_TESTS_DATA_TEST_DATA_H_
+#pragma once
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -21,5 +20,3 @@ inline nlohmann::json test_data_json(const std::string& name) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_DATA_TEST_DATA_H_

@@ -1,6 +1,5 @@
 // A capture as the streams that a recording file would hold.
-#ifndef SIMBENCH_TESTS_EVALUATION_RECORDED_STREAMS_H_
-#define SIMBENCH_TESTS_EVALUATION_RECORDED_STREAMS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -37,5 +36,3 @@ class RecordedStreams final : public TestSink {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_TESTS_EVALUATION_RECORDED_STREAMS_H_

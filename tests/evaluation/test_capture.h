@@ -8,8 +8,7 @@
 //   capture.late_by = [](std::uint32_t camera, std::int64_t) { return from_ms(camera); };
 //   capture.lost = [](std::uint32_t camera, std::int64_t pulse) { return pulse == 5; };
 //   capture.record(scorer);
-#ifndef SIMBENCH_TESTS_EVALUATION_TEST_CAPTURE_H_
-#define SIMBENCH_TESTS_EVALUATION_TEST_CAPTURE_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -57,5 +56,3 @@ inline constexpr double kTolerance = 1e-9;
 inline Nanoseconds staircase(std::uint32_t camera, std::int64_t) { return from_ms(camera); }
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_TESTS_EVALUATION_TEST_CAPTURE_H_

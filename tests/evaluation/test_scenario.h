@@ -1,12 +1,6 @@
 // The 18-camera scenario cut down for the tests of evaluation/, and a backend that plays it from
 // hand-made captures in place of the simulator.
-#ifndef SIMBENCH_TESTS_EVALUATION_TEST_SCENARIO_H_
-#define SIMBENCH_TESTS_EVALUATION_TEST_SCENARIO_H_
-
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
+#pragma once
 
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
@@ -26,5 +20,3 @@ class TestSource final : public RecordingSource {
 };
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_TESTS_EVALUATION_TEST_SCENARIO_H_

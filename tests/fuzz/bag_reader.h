@@ -1,6 +1,5 @@
 // What the fuzzers of bag readers ask of each.
-#ifndef SIMBENCH_TESTS_FUZZ_BAG_READER_H_
-#define SIMBENCH_TESTS_FUZZ_BAG_READER_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -38,5 +37,3 @@ void check_reader(const Reader& read, const std::string& path) {
 }
 
 }  // namespace simbench::bags
-
-#endif  // SIMBENCH_TESTS_FUZZ_BAG_READER_H_

@@ -2,7 +2,6 @@
 // scored without undefined behaviour.
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 
 #include "app/recordings.h"
 #include "recording/rs_csv.h"

@@ -1,7 +1,6 @@
 // What an unknown peer can send over a stream: hello, the headers of frames, their boxes. Any bytes
 // are parsed without undefined behaviour, and nothing opens that was not sealed with the key.
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,6 +1,5 @@
 // Runs coroutines of tests to their end on an io_context, never for longer than a minute.
-#ifndef SIMBENCH_TESTS_HARDWARE_AWAIT_H_
-#define SIMBENCH_TESTS_HARDWARE_AWAIT_H_
+#pragma once
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
@@ -51,5 +50,3 @@ T await(boost::asio::io_context& context, Task<T> task) {
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_AWAIT_H_

@@ -3,8 +3,7 @@
 //
 // A name that examples only hand on is declared as `Whatever`; one whose members they use has its
 // type, in the innermost namespace in which all examples mean the same by it.
-#ifndef SIMBENCH_TESTS_HOUSE_HEADER_EXAMPLES_H_
-#define SIMBENCH_TESTS_HOUSE_HEADER_EXAMPLES_H_
+#pragma once
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -288,5 +287,3 @@ extern int count;
 }  // namespace sim
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_HOUSE_HEADER_EXAMPLES_H_

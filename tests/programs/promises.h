@@ -2,8 +2,7 @@
 // promise that does not hold.
 //
 //   expect(bind_to(fd, address("0.0.0.0", 5000)) == 0, "bind");
-#ifndef SIMBENCH_TESTS_PROGRAMS_PROMISES_H_
-#define SIMBENCH_TESTS_PROGRAMS_PROMISES_H_
+#pragma once
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -97,5 +96,3 @@ inline bool gets(int fd, const char* text, int patience_ms = 100) {
 }
 
 }  // namespace promises
-
-#endif  // SIMBENCH_TESTS_PROGRAMS_PROMISES_H_

@@ -1,6 +1,5 @@
 // Angles as the tests of reconstruction/ state them.
-#ifndef SIMBENCH_TESTS_RECONSTRUCTION_ANGLES_H_
-#define SIMBENCH_TESTS_RECONSTRUCTION_ANGLES_H_
+#pragma once
 
 #include <numbers>
 
@@ -10,5 +9,3 @@ inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kDegree = kPi / 180;
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_TESTS_RECONSTRUCTION_ANGLES_H_

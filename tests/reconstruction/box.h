@@ -1,6 +1,5 @@
 // The simplest closed mesh that tests can know all about.
-#ifndef SIMBENCH_TESTS_RECONSTRUCTION_BOX_H_
-#define SIMBENCH_TESTS_RECONSTRUCTION_BOX_H_
+#pragma once
 
 #include <Eigen/Core>
 
@@ -26,5 +25,3 @@ inline TriangleMesh make_box(const Eigen::Vector3d& sizes_m) {
 }
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_TESTS_RECONSTRUCTION_BOX_H_

@@ -1,6 +1,5 @@
 // A scenario with a studio, for the tests of reconstruction/.
-#ifndef SIMBENCH_TESTS_RECONSTRUCTION_STUDIO_SCENARIO_H_
-#define SIMBENCH_TESTS_RECONSTRUCTION_STUDIO_SCENARIO_H_
+#pragma once
 
 #include "scenarios/loader.h"
 #include "scenarios/scenario.h"
@@ -14,5 +13,3 @@ inline scenarios::Scenario studio_scenario() {
 }
 
 }  // namespace simbench::reconstruction
-
-#endif  // SIMBENCH_TESTS_RECONSTRUCTION_STUDIO_SCENARIO_H_

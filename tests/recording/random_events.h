@@ -1,6 +1,5 @@
 // Random events of a recording, with extreme values among them, and their comparison.
-#ifndef SIMBENCH_TESTS_RECORDING_RANDOM_EVENTS_H_
-#define SIMBENCH_TESTS_RECORDING_RANDOM_EVENTS_H_
+#pragma once
 
 #include <random>
 
@@ -21,5 +20,3 @@ bool same(const KeptEvent& a, const KeptEvent& b);
 bool same(const RigLayout& a, const RigLayout& b);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_RECORDING_RANDOM_EVENTS_H_

@@ -1,6 +1,5 @@
 // A sink that ignores whatever a test does not override.
-#ifndef SIMBENCH_TESTS_RECORDING_TEST_SINK_H_
-#define SIMBENCH_TESTS_RECORDING_TEST_SINK_H_
+#pragma once
 
 #include <span>
 
@@ -23,5 +22,3 @@ class TestSink : public RecordingSink {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_RECORDING_TEST_SINK_H_

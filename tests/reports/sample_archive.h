@@ -1,6 +1,5 @@
 // Small made archives for the tests of comparisons, baselines and gates.
-#ifndef SIMBENCH_TESTS_REPORTS_SAMPLE_ARCHIVE_H_
-#define SIMBENCH_TESTS_REPORTS_SAMPLE_ARCHIVE_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -65,5 +64,3 @@ inline void scale(evaluation::Series& series, double factor) {
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_ARCHIVE_H_

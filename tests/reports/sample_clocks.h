@@ -1,6 +1,5 @@
 // Small made results of clock runs for the tests of reports/.
-#ifndef SIMBENCH_TESTS_REPORTS_SAMPLE_CLOCKS_H_
-#define SIMBENCH_TESTS_REPORTS_SAMPLE_CLOCKS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -57,5 +56,3 @@ inline evaluation::ClockResults sample_clock_results() {
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_CLOCKS_H_

@@ -1,6 +1,5 @@
 // Small hand-made figures for the tests of the HTML report: every mark, line, span and gap once.
-#ifndef SIMBENCH_TESTS_REPORTS_SAMPLE_FIGURES_H_
-#define SIMBENCH_TESTS_REPORTS_SAMPLE_FIGURES_H_
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -116,5 +115,3 @@ inline std::vector<Figure> sample_figures() {
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_FIGURES_H_

@@ -1,7 +1,6 @@
 // A small hand-made reconstruction experiment: three pipelines over three seeds, a curve of two
 // speeds whose errors are straight lines.
-#ifndef SIMBENCH_TESTS_REPORTS_SAMPLE_RECONSTRUCTION_H_
-#define SIMBENCH_TESTS_REPORTS_SAMPLE_RECONSTRUCTION_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -94,5 +93,3 @@ inline reconstruction::ReconstructionResults sample_reconstruction() {
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_RECONSTRUCTION_H_

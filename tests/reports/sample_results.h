@@ -1,6 +1,5 @@
 // Small hand-made results for the tests of reports/.
-#ifndef SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_
-#define SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_
+#pragma once
 
 #include <limits>
 #include <vector>
@@ -195,5 +194,3 @@ inline evaluation::Results sample_genlock_results() {
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_

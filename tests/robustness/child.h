@@ -3,8 +3,7 @@
 //
 //   const Ending ending = call({.arguments = {"simbench", "validate", "a.json"}});
 //   if (const auto problem = problem_of(ending)) report(*problem);
-#ifndef SIMBENCH_TESTS_ROBUSTNESS_CHILD_H_
-#define SIMBENCH_TESTS_ROBUSTNESS_CHILD_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -49,5 +48,3 @@ Ending call(const Call& call);
 std::optional<std::string> problem_of(const Ending& ending, const std::string& input = "");
 
 }  // namespace simbench::robustness
-
-#endif  // SIMBENCH_TESTS_ROBUSTNESS_CHILD_H_

@@ -5,8 +5,7 @@
 //   Attempt attempt = inputs.next(random);
 //   Ending ending = call({.arguments = attempt.arguments});
 //   inputs.restore(attempt);
-#ifndef SIMBENCH_TESTS_ROBUSTNESS_INPUTS_H_
-#define SIMBENCH_TESTS_ROBUSTNESS_INPUTS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -64,5 +63,3 @@ class Inputs {
 };
 
 }  // namespace simbench::robustness
-
-#endif  // SIMBENCH_TESTS_ROBUSTNESS_INPUTS_H_

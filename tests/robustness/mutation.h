@@ -1,6 +1,5 @@
 // Hostile changes of a text: bytes, lines, numbers and words.
-#ifndef SIMBENCH_TESTS_ROBUSTNESS_MUTATION_H_
-#define SIMBENCH_TESTS_ROBUSTNESS_MUTATION_H_
+#pragma once
 
 #include <string>
 
@@ -16,5 +15,3 @@ std::string hostile_word(Random& random);
 std::string mutated(std::string text, Random& random);
 
 }  // namespace simbench::robustness
-
-#endif  // SIMBENCH_TESTS_ROBUSTNESS_MUTATION_H_

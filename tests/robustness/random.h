@@ -1,12 +1,10 @@
 // Random choices, the same on every machine: the standard's distributions are not.
-#ifndef SIMBENCH_TESTS_ROBUSTNESS_RANDOM_H_
-#define SIMBENCH_TESTS_ROBUSTNESS_RANDOM_H_
+#pragma once
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <random>
-#include <utility>
 #include <vector>
 
 namespace simbench::robustness {
@@ -32,5 +30,3 @@ class Random {
 };
 
 }  // namespace simbench::robustness
-
-#endif  // SIMBENCH_TESTS_ROBUSTNESS_RANDOM_H_

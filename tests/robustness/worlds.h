@@ -2,8 +2,7 @@
 //
 //   const Worlds worlds;
 //   Ending ending = call({.arguments = worlds.next(random)});
-#ifndef SIMBENCH_TESTS_ROBUSTNESS_WORLDS_H_
-#define SIMBENCH_TESTS_ROBUSTNESS_WORLDS_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -40,5 +39,3 @@ class Worlds {
 };
 
 }  // namespace simbench::robustness
-
-#endif  // SIMBENCH_TESTS_ROBUSTNESS_WORLDS_H_

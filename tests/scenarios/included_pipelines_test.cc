@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/builtin_files.h"
+#include "scenarios/schema.h"
+#include "tests/nonempty.h"
 #include "tests/scenarios/support.h"
 #include "tests/scratch_folder.h"
 
@@ -67,11 +70,24 @@ TEST(IncludedPipelines, WhatIsNoSuchItemIsRefused) {
             "there, or its begin and *");
   EXPECT_EQ(error(R"({"from": "leaderboard_lan", "names": []})"),
             "my.json:3: /pipelines/0: found no pipeline, allowed: names of which there is one");
+  EXPECT_EQ(error(R"({"name": "mine", "names": ["host.*"]})"),
+            "my.json:3: /pipelines/0/names: found without \"from\", allowed: beside the scenario "
+            "that it chooses from");
   EXPECT_THAT(error(R"({"from": "leaderbord_lan"})"),
               testing::StartsWith("my.json:3: /pipelines/0/from: found \"leaderbord_lan\", did you "
                                   "mean leaderboard_lan"));
   EXPECT_THAT(error(R"({"from": "leaderboard_lan", "gatherng": "k4a"})"),
               testing::HasSubstr("gatherng"));
+}
+
+// As an editor does that reads "$schema".
+TEST(IncludedPipelines, TheSchemaTakesSimbenchsOwnFilesAsTheyAreWritten) {
+  const JsonSchema schema(nlohmann::json::parse(schema_text()));
+  for (const BuiltinFile& file : nonempty(builtin_files())) {
+    for (const SchemaProblem& problem : schema.problems(nlohmann::json::parse(file.text))) {
+      ADD_FAILURE() << file.name << problem.pointer << ": " << problem.text;
+    }
+  }
 }
 
 TEST(IncludedPipelines, CirclesEnd) {

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/schema.h"

@@ -1,6 +1,5 @@
 // What the tests of scenarios share.
-#ifndef SIMBENCH_TESTS_SCENARIOS_SUPPORT_H_
-#define SIMBENCH_TESTS_SCENARIOS_SUPPORT_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -55,5 +54,3 @@ inline std::string error_of_set(const std::string& pointer, const std::string& v
 }
 
 }  // namespace simbench::scenarios
-
-#endif  // SIMBENCH_TESTS_SCENARIOS_SUPPORT_H_

@@ -1,3 +1,4 @@
+
 #include "scenarios/wifi_checks.h"
 
 #include <gtest/gtest.h>

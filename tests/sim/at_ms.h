@@ -1,6 +1,5 @@
 // Instants as tests state and read them: in ms, or never.
-#ifndef SIMBENCH_TESTS_SIM_AT_MS_H_
-#define SIMBENCH_TESTS_SIM_AT_MS_H_
+#pragma once
 
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
@@ -15,5 +14,3 @@ inline double ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
 inline constexpr SteadyTime kNoDeadline = SteadyTime::max();
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_SIM_AT_MS_H_

@@ -26,8 +26,7 @@
 // Source: docs/reference/host_sync.md sections 1 and 2 (chrony 4.3); chrony.conf documentation.
 //
 //   ChronyService chrony({});
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -186,5 +185,3 @@ struct UnfinishedSlew {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_H_

@@ -6,8 +6,7 @@
 //   ChronySourceStats stats({});
 //   if (stats.is_good(sample)) stats.add(sample);
 //   if (stats.estimate()) stats.correct(now_s, stats.predict_s(now_s), 0);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_SOURCE_STATS_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_SOURCE_STATS_H_
+#pragma once
 
 #include <cstddef>
 #include <limits>
@@ -172,5 +171,3 @@ class ChronySourceStats {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_SOURCE_STATS_H_

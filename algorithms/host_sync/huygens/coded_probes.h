@@ -3,8 +3,7 @@
 //
 // Times are counts of nanoseconds of the hosts' raw clocks, which nobody steers; |time| < 2^61.
 // Source: Geng et al., NSDI 2018; docs/reference/host_sync.md section 1 (Huygens).
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_CODED_PROBES_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_CODED_PROBES_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -12,7 +11,6 @@
 #include <deque>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "algorithms/ports/time.h"
 #include "laws/line_fit.h"
@@ -89,5 +87,3 @@ std::optional<PairLine> separating_line(std::span<const LinePoint> above,
                                         double max_rate);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_CODED_PROBES_H_

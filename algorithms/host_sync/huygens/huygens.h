@@ -28,8 +28,7 @@
 // Synchronization, NSDI 2018; docs/reference/host_sync.md section 1 (Huygens).
 //
 //   Huygens sync({.stamps = StampSource::kCard, .purity = from_us(0.2)});
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -61,5 +60,3 @@ Task<void> follow_huygens(Host& host, PeerId master, HuygensSettings settings);
 using Huygens = ClockService<HuygensSettings, serve_huygens, follow_huygens>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_H_

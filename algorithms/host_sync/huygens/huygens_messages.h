@@ -10,8 +10,7 @@
 //
 //   Bytes bytes = encode(HuygensMessage(ProbeMessage{.pair = 3, .member = 1}));
 //   std::optional<HuygensMessage> message = decode_huygens_message(bytes);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_MESSAGES_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_MESSAGES_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -93,5 +92,3 @@ Bytes encode(const HuygensMessage& message);
 std::optional<HuygensMessage> decode_huygens_message(const Bytes& bytes);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_HUYGENS_MESSAGES_H_

@@ -16,8 +16,7 @@
 //
 //   const auto offsets = loop_corrected({{0, 1, 5.0}, {1, 2, 5.0}, {0, 2, 13.0}}, 3);
 //   // 0, 6, 12
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_NETWORK_EFFECT_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_NETWORK_EFFECT_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -58,5 +57,3 @@ std::vector<std::pair<PeerId, PeerId>> probed_pairs(std::size_t hosts, std::size
                                                     const std::function<double()>& uniform);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_NETWORK_EFFECT_H_

@@ -5,8 +5,7 @@
 //
 //   ProbeLink link(host, master, HuygensSettings{}, raw);
 //   co_await link.probe();
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_PROBE_LINK_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_PROBE_LINK_H_
+#pragma once
 
 #include <cstdint>
 #include <deque>
@@ -57,5 +56,3 @@ class ProbeLink {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_PROBE_LINK_H_

@@ -9,8 +9,7 @@
 //
 //   RawClock raw(host, StampSource::kKernel, {});
 //   std::optional<std::int64_t> arrived = raw.arrival(message);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_RAW_CLOCK_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_RAW_CLOCK_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -60,5 +59,3 @@ class RawClock {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_RAW_CLOCK_H_

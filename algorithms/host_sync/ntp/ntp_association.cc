@@ -1,7 +1,6 @@
 #include "algorithms/host_sync/ntp/ntp_association.h"
 
 #include <boost/endian/conversion.hpp>
-#include <chrono>
 #include <deque>
 #include <utility>
 

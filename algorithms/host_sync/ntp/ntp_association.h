@@ -16,8 +16,7 @@
 //   NtpAssociation association(host, master, NtpStamps::kApplication);
 //   const std::optional<NtpMeasurement> reply = co_await association.exchange(from_ms(1000));
 //   if (reply) use(reply->offset_s(), reply->delay_s());
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_ASSOCIATION_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_ASSOCIATION_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -148,5 +147,3 @@ Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, double root_disper
 Task<void> broadcast_ntp(Host& host, std::vector<PeerId> clients, Nanoseconds interval);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_ASSOCIATION_H_

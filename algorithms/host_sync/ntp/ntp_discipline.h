@@ -8,8 +8,7 @@
 //   NtpDiscipline discipline({});
 //   const auto best = filter.add({offset_s, delay_s, dispersion_s, now_s}, 64);
 //   if (best && discipline.update(best->offset_s, now_s) == NtpAction::kStep) step(best->offset_s);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -200,5 +199,3 @@ class NtpDiscipline {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_

@@ -21,8 +21,7 @@
 //   kernel.update(1e-3, 6, now_s + 64);
 //   const double phase_s = kernel.residual_s(now_s + 64) - kernel.residual_s(now_s + 128);
 //   correct_the_clock(kernel.frequency(), phase_s);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_KERNEL_LOOP_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_KERNEL_LOOP_H_
+#pragma once
 
 namespace simbench {
 
@@ -83,5 +82,3 @@ class NtpKernelLoop {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_KERNEL_LOOP_H_

@@ -34,8 +34,7 @@
 //   NtpSettings settings;
 //   settings.mode = NtpMode::kBroadcastVolley;
 //   NtpService ntp(settings);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -69,5 +68,3 @@ Task<void> follow_ntpd(Host& host, PeerId master, NtpSettings settings);
 using NtpService = ClockService<NtpSettings, serve_ntpd, follow_ntpd>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_

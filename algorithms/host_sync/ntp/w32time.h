@@ -28,8 +28,7 @@
 // reports how its first poll ended, and every exchange.
 //
 // Source: docs/reference/host_sync.md section 2 (W32Time); RFC 4330; RFC 5905.
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -135,5 +134,3 @@ Task<void> follow_w32time(Host& host, PeerId master, W32TimeSettings settings);
 using W32Time = ClockService<W32TimeSettings, serve_w32time, follow_w32time>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_

@@ -25,8 +25,7 @@
 // The names: ptp_e2e_* and ptp_p2p_*, once a second as linuxptp's defaults are; *_16hz sixteen
 // times a second.
 // Source: IEEE 1588-2008 clauses 11 and 13; docs/reference/host_sync.md section 1 (linuxptp).
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -60,5 +59,3 @@ Task<void> follow_ptp(Host& host, PeerId master, PtpSettings settings);
 using Ptp = ClockService<PtpSettings, serve_ptp, follow_ptp>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_

@@ -6,8 +6,7 @@
 //     co_await coupling.update();
 //     co_await host.sleep_for(ClockCoupling::kInterval);
 //   }
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -72,5 +71,3 @@ Task<void> serve_slaves(Host& host, std::vector<PeerId> slaves, StampSource stam
 Task<CrossStamp> narrowest_cross_stamp(Host& host);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_

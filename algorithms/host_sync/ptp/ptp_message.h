@@ -23,8 +23,7 @@
 // Source: IEEE 1588-2008 clause 13; facebook/time, ptp/sptp/README.md.
 //
 //   Bytes bytes = encode(PtpMessage{.type = PtpType::kSync, .sequence = 7});
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -65,5 +64,3 @@ Bytes encode(const PtpMessage& message);
 std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes);
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_

@@ -1,8 +1,7 @@
 // The two ends of PTP (ptp.h), and what the slave computes from the stamps.
 //
 // Every stamp is a count of nanoseconds of the clock that stamps (stamps.h).
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -178,5 +177,3 @@ class PtpSlave {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_

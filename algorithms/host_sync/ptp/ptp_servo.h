@@ -28,14 +28,12 @@
 //   PiServo servo(PiServo::kHardwareStamps, {});
 //   ServoAnswer answer = servo.sample(offset_ns, t2_ns, 1.0);
 //   if (answer.state != ServoState::kUnlocked) co_await clock.adjust_frequency(-answer.ppb);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
 
 #include "algorithms/parameter_binder.h"
 
@@ -150,5 +148,3 @@ class LinearRegressionServo : public Servo {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_

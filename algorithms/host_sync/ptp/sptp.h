@@ -20,8 +20,7 @@
 // Source: facebook/time, ptp/sptp (README.md, client/), ptp/ptp4u/server/worker.go.
 //
 //   Sptp sync({.stamps = StampSource::kCard});
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_H_
+#pragma once
 
 #include <vector>
 
@@ -50,5 +49,3 @@ Task<void> follow_sptp(Host& host, PeerId server, SptpSettings settings);
 using Sptp = ClockService<SptpSettings, serve_sptp, follow_sptp>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_H_

@@ -4,13 +4,11 @@
 // Source: facebook/time, ptp/sptp/client/measurements.go and sptp.go, servo/pi.go. Left out: its
 // check for late ticks of its own timer, the choice among several servers, and the rounding of its
 // filter to whole nanoseconds.
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_SERVO_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_SERVO_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <optional>
 
 #include "algorithms/host_sync/ptp/ptp_port.h"
 #include "algorithms/host_sync/ptp/ptp_servo.h"
@@ -105,5 +103,3 @@ class SptpServo {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_SPTP_SERVO_H_

@@ -27,8 +27,7 @@
 // port reports that as its outcome and ends; if the master lacks the port and does not answer, the
 // network alone counts.
 // Source: TriggerSync (docs/reference/host_sync.md names it; method as described here).
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_
+#pragma once
 
 #include <optional>
 #include <vector>
@@ -67,5 +66,3 @@ class CommonView : public HostSync {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_

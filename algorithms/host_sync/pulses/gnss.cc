@@ -1,7 +1,6 @@
 #include "algorithms/host_sync/pulses/gnss.h"
 
 #include <cmath>
-#include <utility>
 
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"

@@ -9,8 +9,7 @@
 // A service. A slave without the line, or whose receiver sends no time within 10 s, reports
 // that as its outcome.
 // Source: theory; PulseStamp::gnss in algorithms/ports/host.h.
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_
+#pragma once
 
 #include <optional>
 #include <vector>
@@ -57,5 +56,3 @@ Task<void> follow_gnss(Host& host, PeerId master, GnssSettings settings);
 using Gnss = ClockService<GnssSettings, serve_gnss, follow_gnss>;
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_

@@ -3,8 +3,7 @@
 //   PulseObserver observer(host, {.source = PulseSource::kFrames});
 //   co_await observer.collect();
 //   if (auto pulse = observer.middle()) tell_the_others(*pulse);
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -156,5 +155,3 @@ class PulseObserver {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_

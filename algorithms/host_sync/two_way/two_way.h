@@ -23,8 +23,7 @@
 //
 // Cost: two messages an exchange. Source: docs/reference/host_sync.md section 1; RFC 9769
 // (interleaved mode).
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -164,5 +163,3 @@ class TwoWaySlave {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_

@@ -13,8 +13,7 @@
 //   TwoWayHull hull({});
 //   hull.add(exchange);
 //   std::optional<ClockLine> line = hull.line();
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_ESTIMATORS_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_ESTIMATORS_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -175,5 +174,3 @@ class TwoWayMinimum : public TwoWayEstimator {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_ESTIMATORS_H_

@@ -3,7 +3,6 @@
 #include "algorithms/host_sync/yoon2021/yoon2021.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>

@@ -49,8 +49,7 @@
 // on SUCCESS or GIVE_UP, or when the master has been silent for kSlavePatience silence limits.
 // run_master returns when every slave's outcome has been reported; it reports an exchange a pass
 // with t1 = T_m, t3 = T_s, t4 = T_r (t2 does not exist here).
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_YOON2021_YOON2021_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_YOON2021_YOON2021_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -101,5 +100,3 @@ class Yoon2021 : public HostSync {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_YOON2021_YOON2021_H_

@@ -1,8 +1,6 @@
 // What holds for every algorithm of the stage.
 #include <gmock/gmock.h>
 
-#include <string>
-
 #include "algorithms/ports/capture_alignment.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/capture_alignment/fake_camera.h"

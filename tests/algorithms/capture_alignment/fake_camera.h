@@ -9,8 +9,7 @@
 //   FakeCamera& camera = rig.add(1, {.phase = from_ms(7)});
 //   rig.run(*algorithm, from_ms(5000));
 //   EXPECT_EQ(camera.middles().back() % from_ms(30), Nanoseconds(0));
-#ifndef SIMBENCH_TESTS_ALGORITHMS_CAPTURE_ALIGNMENT_FAKE_CAMERA_H_
-#define SIMBENCH_TESTS_ALGORITHMS_CAPTURE_ALIGNMENT_FAKE_CAMERA_H_
+#pragma once
 
 #include <boost/asio/steady_timer.hpp>
 #include <cstddef>
@@ -142,5 +141,3 @@ std::unique_ptr<CaptureAlignment> make_alignment(const std::string& name,
                                                  const ParameterValues& given = {});
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_CAPTURE_ALIGNMENT_FAKE_CAMERA_H_

@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
 #include "algorithms/capture_alignment/steered_camera.h"
 #include "tests/algorithms/capture_alignment/fake_camera.h"
 #include "tests/nonempty.h"

@@ -10,8 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "algorithms/device_time/unwrap.h"
 #include "laws/lower_hull.h"

@@ -4,9 +4,7 @@
 
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
-#include <cmath>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>

@@ -1,6 +1,5 @@
 // Polls of a camera's clock for the tests of two-way device time.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_POLLS_H_
-#define SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_POLLS_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -86,5 +85,3 @@ inline ErrorStatistics statistics(const std::vector<double>& errors) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_POLLS_H_

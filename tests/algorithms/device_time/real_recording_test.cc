@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <fstream>
 #include <istream>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>

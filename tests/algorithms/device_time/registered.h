@@ -1,7 +1,6 @@
 // The registered device_time estimators of cameras with clocks of their own that can be made here,
 // also with all variants.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_REGISTERED_H_
-#define SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_REGISTERED_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -31,5 +30,3 @@ inline std::unique_ptr<DeviceTimeEstimator> make_registered(const std::string& f
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_REGISTERED_H_

@@ -1,6 +1,5 @@
 // Streams of one camera's (sensor stamp, arrival) for the tests of device_time.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_STREAMS_H_
-#define SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_STREAMS_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -49,5 +48,3 @@ inline double error_ns(GlobalTime stamp, std::int64_t expected_ns) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_STREAMS_H_

@@ -2,9 +2,7 @@
 
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "algorithms/device_time/poll_estimators.h"
 #include "algorithms/device_time/variants.h"

@@ -1,6 +1,5 @@
 // What a gatherer emitted, and how gatherers are set up, for the tests of gathering.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_GATHERING_COLLECTED_SETS_H_
-#define SIMBENCH_TESTS_ALGORITHMS_GATHERING_COLLECTED_SETS_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -71,5 +70,3 @@ inline GatheringSetup short_setup(std::uint32_t sources, std::uint32_t queue_lim
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_GATHERING_COLLECTED_SETS_H_

@@ -1,6 +1,5 @@
 // Random streams for the tests of gathering: noisy stamps, lost frames, delays, ties.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_GATHERING_GATHERING_WORLD_H_
-#define SIMBENCH_TESTS_ALGORITHMS_GATHERING_GATHERING_WORLD_H_
+#pragma once
 
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
@@ -53,5 +52,3 @@ inline std::vector<GatherFrame> frames_of(const GatheringWorld& world, std::uint
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_GATHERING_GATHERING_WORLD_H_

@@ -6,7 +6,6 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 namespace simbench {
 namespace {

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include <cstdint>
-#include <vector>
 
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"

@@ -4,8 +4,7 @@
 //   world.run(service, from_ms(60e3));
 //   expect_locked(world, {.error_us = 0.5});
 //   expect_refused(world, 2, "has not locked");
-#ifndef SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_CLOSED_LOOP_H_
-#define SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_CLOSED_LOOP_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -58,5 +57,3 @@ inline void cut(ScriptWorld& world, PeerId from, PeerId to) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_CLOSED_LOOP_H_

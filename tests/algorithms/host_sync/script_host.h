@@ -9,8 +9,7 @@
 //   world.set_latency(0, 1, from_ms(0.2));
 //   world.run(algorithm);
 //   EXPECT_EQ(world.host(1).lead_over(world.host(0)), from_ms(-1.5));
-#ifndef SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_SCRIPT_HOST_H_
-#define SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_SCRIPT_HOST_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <cstddef>
@@ -135,5 +134,3 @@ class ScriptHost : public Host {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_SCRIPT_HOST_H_

@@ -4,8 +4,7 @@
 //   world.script_link(0, 1, unreliable_link(engine, kLatency, {.twice_after = from_ms(0.3),
 //                                                              .late = {kLatency + from_ms(70)}}));
 //   world.host(1).deliver(0, random_bytes(engine, 60));
-#ifndef SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_UNRELIABLE_LINK_H_
-#define SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_UNRELIABLE_LINK_H_
+#pragma once
 
 #include <boost/random/mersenne_twister.hpp>
 #include <cstddef>
@@ -47,5 +46,3 @@ inline Bytes random_bytes(boost::random::mt19937_64& engine, std::size_t below) 
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_UNRELIABLE_LINK_H_

@@ -3,11 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <iostream>
-#include <string>
-#include <vector>
 
 #include "evaluation/run/evaluate.h"
 #include "evaluation/statistics/paired.h"

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include <string>
-
 #include "tests/cli/program.h"
 
 namespace simbench {

@@ -4,7 +4,6 @@
 //   my_bench list                            shows them among simbench's own
 //   my_bench my_rig.json                     prints their rows
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "evaluation/fit/fit_check.h"
 #include "evaluation/fit/fit_model.h"

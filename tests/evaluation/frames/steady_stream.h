@@ -1,6 +1,5 @@
 // The stream of a camera whose clock has a constant rate.
-#ifndef SIMBENCH_TESTS_EVALUATION_FRAMES_STEADY_STREAM_H_
-#define SIMBENCH_TESTS_EVALUATION_FRAMES_STEADY_STREAM_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -29,5 +28,3 @@ RecordedStream steady_stream(const std::string& name, int frames, double drift_p
 }
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_TESTS_EVALUATION_FRAMES_STEADY_STREAM_H_

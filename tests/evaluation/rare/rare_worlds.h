@@ -1,7 +1,6 @@
 // Runs whose rare events have known probabilities: independent streams of the simulator's random
 // numbers, under its seed fields (sim/engine/seed_field.h), as a simulated world has them.
-#ifndef SIMBENCH_TESTS_EVALUATION_RARE_RARE_WORLDS_H_
-#define SIMBENCH_TESTS_EVALUATION_RARE_RARE_WORLDS_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -50,5 +49,3 @@ inline double largest_tail(double x, std::size_t numbers) {
 }
 
 }  // namespace simbench::evaluation
-
-#endif  // SIMBENCH_TESTS_EVALUATION_RARE_RARE_WORLDS_H_

@@ -1,7 +1,6 @@
 // Cameras that film a clock of LEDs, from the world to the scores.
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
 #include "evaluation/run/evaluate.h"

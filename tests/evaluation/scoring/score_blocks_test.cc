@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -2,12 +2,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "evaluation/run/evaluate.h"
 #include "recording/forwarding_sink.h"

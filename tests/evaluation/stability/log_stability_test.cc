@@ -3,12 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "scenarios/loader.h"
-#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {

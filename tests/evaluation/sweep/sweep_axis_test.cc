@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <charconv>
 #include <random>
 #include <string>
 

@@ -1,6 +1,5 @@
 // Short ways to write what the camera tests configure.
-#ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_CAMERA_VALUES_H_
-#define SIMBENCH_TESTS_HARDWARE_CAMERA_CAMERA_VALUES_H_
+#pragma once
 
 #include <string>
 #include <utility>
@@ -37,5 +36,3 @@ inline RigCamera recorded(const std::string& serial, const std::string& recordin
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_CAMERA_CAMERA_VALUES_H_

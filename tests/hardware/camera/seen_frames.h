@@ -1,6 +1,5 @@
 // What a camera's handlers received, for a test that waits for some of it.
-#ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_SEEN_FRAMES_H_
-#define SIMBENCH_TESTS_HARDWARE_CAMERA_SEEN_FRAMES_H_
+#pragma once
 
 #include <chrono>
 #include <condition_variable>
@@ -74,5 +73,3 @@ class SeenFrames {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_CAMERA_SEEN_FRAMES_H_

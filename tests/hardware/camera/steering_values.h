@@ -1,6 +1,5 @@
 // What the tests of steered cameras agree on.
-#ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_STEERING_VALUES_H_
-#define SIMBENCH_TESTS_HARDWARE_CAMERA_STEERING_VALUES_H_
+#pragma once
 
 #include "hardware/camera/camera.h"
 
@@ -20,5 +19,3 @@ inline FrameSteering steering_settings(std::uint32_t latency_frames = 2) {
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_CAMERA_STEERING_VALUES_H_

@@ -1,7 +1,6 @@
 // A kernel whose clocks go when the test says so: what clock_gettime, clock_settime and adjtimex do
 // on Linux, as far as an OsClock uses them.
-#ifndef SIMBENCH_TESTS_HARDWARE_CLOCK_FAKE_KERNEL_H_
-#define SIMBENCH_TESTS_HARDWARE_CLOCK_FAKE_KERNEL_H_
+#pragma once
 
 #include <cmath>
 
@@ -67,5 +66,3 @@ class FakeKernel final : public ClockCalls {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_CLOCK_FAKE_KERNEL_H_

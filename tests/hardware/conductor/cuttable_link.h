@@ -1,7 +1,6 @@
 // A TCP link to a local port that a test can cut: every connection through it breaks, and new ones
 // are refused until it is mended.
-#ifndef SIMBENCH_TESTS_HARDWARE_CONDUCTOR_CUTTABLE_LINK_H_
-#define SIMBENCH_TESTS_HARDWARE_CONDUCTOR_CUTTABLE_LINK_H_
+#pragma once
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/executor_work_guard.hpp>
@@ -52,5 +51,3 @@ class CuttableLink {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_CONDUCTOR_CUTTABLE_LINK_H_

@@ -4,9 +4,6 @@
 
 #include <boost/asio/io_context.hpp>
 #include <list>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "tests/hardware/conductor/cuttable_link.h"
 #include "tests/hardware/conductor/test_rig.h"

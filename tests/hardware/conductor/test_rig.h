@@ -1,14 +1,10 @@
 // A rig inside the test program: real nodes on loopback ports, in a thread of their own, with
 // cameras that deliver a frame at each period from their start.
-#ifndef SIMBENCH_TESTS_HARDWARE_CONDUCTOR_TEST_RIG_H_
-#define SIMBENCH_TESTS_HARDWARE_CONDUCTOR_TEST_RIG_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <filesystem>
 #include <memory>
-#include <mutex>
-#include <string>
-#include <thread>
 #include <vector>
 
 #include "hardware/camera/camera.h"
@@ -58,5 +54,3 @@ class TestRig {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_CONDUCTOR_TEST_RIG_H_

@@ -3,8 +3,7 @@
 //
 //   const int result = in_sandbox([] { return reaches_member() ? kGood : 1; });
 //   SKIP_WITHOUT_NAMESPACES(result);
-#ifndef SIMBENCH_TESTS_HARDWARE_EXPERIMENT_IN_SANDBOX_H_
-#define SIMBENCH_TESTS_HARDWARE_EXPERIMENT_IN_SANDBOX_H_
+#pragma once
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -44,5 +43,3 @@ int in_sandbox(const Body& body) {
   if ((result) == kNotPermitted) GTEST_SKIP() << "not run: no network namespace is permitted here"
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_EXPERIMENT_IN_SANDBOX_H_

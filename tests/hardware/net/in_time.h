@@ -1,6 +1,5 @@
 // Runs coroutines of a test in its io_context until they are done, bounded in time.
-#ifndef SIMBENCH_TESTS_HARDWARE_NET_IN_TIME_H_
-#define SIMBENCH_TESTS_HARDWARE_NET_IN_TIME_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -105,5 +104,3 @@ StreamError stream_error(F&& fails) {
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NET_IN_TIME_H_

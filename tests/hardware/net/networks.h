@@ -1,6 +1,5 @@
 // Networks of two or three hosts in one io_context, on the loopback interface.
-#ifndef SIMBENCH_TESTS_HARDWARE_NET_NETWORKS_H_
-#define SIMBENCH_TESTS_HARDWARE_NET_NETWORKS_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <memory>
@@ -78,5 +77,3 @@ struct Networks {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NET_NETWORKS_H_

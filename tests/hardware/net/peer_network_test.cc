@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "hardware/net/notice.h"
 #include "tests/hardware/net/networks.h"

@@ -1,9 +1,6 @@
 // A node's clock for tests of what only reads it: steady and system time are the monotonic clock's,
 // plus a fixed offset each.
-#ifndef SIMBENCH_TESTS_HARDWARE_NET_PLAIN_CLOCK_H_
-#define SIMBENCH_TESTS_HARDWARE_NET_PLAIN_CLOCK_H_
-
-#include <utility>
+#pragma once
 
 #include "hardware/clock/node_clock.h"
 
@@ -42,5 +39,3 @@ class PlainClock final : public NodeClock {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NET_PLAIN_CLOCK_H_

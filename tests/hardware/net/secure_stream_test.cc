@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "tests/hardware/net/in_time.h"
 #include "tests/hardware/net/stream_pair.h"

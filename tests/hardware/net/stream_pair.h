@@ -1,12 +1,10 @@
 // Two ends of a connection over the loopback interface: SecureStreams, or one against plain bytes.
-#ifndef SIMBENCH_TESTS_HARDWARE_NET_STREAM_PAIR_H_
-#define SIMBENCH_TESTS_HARDWARE_NET_STREAM_PAIR_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "hardware/net/secure_stream.h"
@@ -54,5 +52,3 @@ struct StreamPair {
 StreamPair stream_pair(boost::asio::io_context& context, SecretKey key = key_from_digit('7'));
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NET_STREAM_PAIR_H_

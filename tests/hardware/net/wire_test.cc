@@ -6,7 +6,6 @@
 #include <boost/asio/ip/address.hpp>
 #include <random>
 #include <set>
-#include <string>
 
 #include "hardware/net/datagram.h"
 #include "hardware/net/kernel_stamps.h"

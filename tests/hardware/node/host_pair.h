@@ -1,6 +1,5 @@
 // Two real hosts over 127.0.0.1 in one io_context, whose clocks' true errors are known.
-#ifndef SIMBENCH_TESTS_HARDWARE_NODE_HOST_PAIR_H_
-#define SIMBENCH_TESTS_HARDWARE_NODE_HOST_PAIR_H_
+#pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <memory>
@@ -40,5 +39,3 @@ class HostPair {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NODE_HOST_PAIR_H_

@@ -1,6 +1,5 @@
 // Controls of a camera that there is not: what was asked of it.
-#ifndef SIMBENCH_TESTS_HARDWARE_NODE_MADE_UP_STEERING_H_
-#define SIMBENCH_TESTS_HARDWARE_NODE_MADE_UP_STEERING_H_
+#pragma once
 
 #include <utility>
 #include <vector>
@@ -35,5 +34,3 @@ class MadeUpSteering final : public CameraSteering {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NODE_MADE_UP_STEERING_H_

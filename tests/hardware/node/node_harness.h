@@ -1,7 +1,6 @@
 // A node with made-up cameras and a made-up host_sync, and conductors that speak to it over real
 // streams on 127.0.0.1.
-#ifndef SIMBENCH_TESTS_HARDWARE_NODE_NODE_HARNESS_H_
-#define SIMBENCH_TESTS_HARDWARE_NODE_NODE_HARNESS_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -143,5 +142,3 @@ class NodeHarness : public testing::Test {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NODE_NODE_HARNESS_H_

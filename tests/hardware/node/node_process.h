@@ -1,6 +1,5 @@
 // The real `simbench node` as a process of its own, on 127.0.0.1, with cameras that play a CSV.
-#ifndef SIMBENCH_TESTS_HARDWARE_NODE_NODE_PROCESS_H_
-#define SIMBENCH_TESTS_HARDWARE_NODE_NODE_PROCESS_H_
+#pragma once
 
 #include <sys/types.h>
 
@@ -40,5 +39,3 @@ class NodeProcess {
 };
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_NODE_NODE_PROCESS_H_

@@ -1,6 +1,5 @@
 // A RealSense camera made of software, whose frames a test injects one by one.
-#ifndef SIMBENCH_TESTS_HARDWARE_REALSENSE_SOFTWARE_CAMERA_H_
-#define SIMBENCH_TESTS_HARDWARE_REALSENSE_SOFTWARE_CAMERA_H_
+#pragma once
 
 #include <cstdint>
 #include <librealsense2/hpp/rs_internal.hpp>
@@ -114,5 +113,3 @@ class SoftwareCamera {
 }
 
 }  // namespace simbench::hardware
-
-#endif  // SIMBENCH_TESTS_HARDWARE_REALSENSE_SOFTWARE_CAMERA_H_

@@ -9,7 +9,6 @@
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
-#include <cstring>
 #include <set>
 #include <thread>
 

@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "hardware/experiment/child_process.h"
 #include "hardware/relay/relayed_stream.h"

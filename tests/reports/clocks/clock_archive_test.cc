@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <string>
-#include <vector>
 
 #include "reports/archive/archive.h"
 #include "reports/clocks/clock_report.h"

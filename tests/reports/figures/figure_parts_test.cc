@@ -7,7 +7,6 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <utility>
 #include <vector>

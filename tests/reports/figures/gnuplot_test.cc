@@ -6,8 +6,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <limits>
 #include <string>
 
 #include "evaluation/statistics/statistics.h"

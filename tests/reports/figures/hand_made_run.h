@@ -3,8 +3,7 @@
 // Pulse p is at p * 20 ms of true time, which is also the master's clock; 3 pulses of warm-up, 10
 // evaluated. Cameras have registers that began 1000 ms apart. Hosts' clocks are off by `host_ms`,
 // so global stamps and arrivals (5 ms late) are too.
-#ifndef SIMBENCH_TESTS_REPORTS_FIGURES_HAND_MADE_RUN_H_
-#define SIMBENCH_TESTS_REPORTS_FIGURES_HAND_MADE_RUN_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -76,5 +75,3 @@ inline evaluation::RunDetail hand_made_run(const std::vector<double>& host_ms,
 }
 
 }  // namespace simbench::reports
-
-#endif  // SIMBENCH_TESTS_REPORTS_FIGURES_HAND_MADE_RUN_H_

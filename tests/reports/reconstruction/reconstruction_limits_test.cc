@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "reports/reconstruction/reconstruction_document.h"
 #include "tests/reports/sample_reconstruction.h"
 

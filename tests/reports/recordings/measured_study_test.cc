@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <random>
 #include <string>
 
 #include "recording/version.h"

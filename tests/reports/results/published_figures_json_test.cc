@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
 #include "reports/archive/archive.h"
 #include "reports/results/json.h"

@@ -18,6 +18,12 @@ AnswerText short_answer() {
   return answer;
 }
 
+TEST(AnswerText, FewSeedsAgreeWithTheirVerb) {
+  EXPECT_EQ(few_seeds_text(1), "1 seed says little about other worlds");
+  EXPECT_EQ(few_seeds_text(3), "3 seeds say little about other worlds");
+  EXPECT_EQ(few_seeds_text(1, " of a point"), "1 seed of a point says little about other worlds");
+}
+
 TEST(AnswerText, IsOneParagraphWithoutLabels) {
   EXPECT_THAT(paragraphs(short_answer()),
               ElementsAre("a < b is best. The next has twice as much. Uncertain: 1 seed."));

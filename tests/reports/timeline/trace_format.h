@@ -1,7 +1,6 @@
 // The rules of the Chrome trace event format, as far as simbench uses it, and what one may expect
 // of a timeline besides: every violation in a trace as a line of text.
-#ifndef SIMBENCH_TESTS_REPORTS_TIMELINE_TRACE_FORMAT_H_
-#define SIMBENCH_TESTS_REPORTS_TIMELINE_TRACE_FORMAT_H_
+#pragma once
 
 #include <fmt/format.h>
 
@@ -128,5 +127,3 @@ class TraceFormat {
 };
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_REPORTS_TIMELINE_TRACE_FORMAT_H_

@@ -4,8 +4,7 @@
 //   const std::uint64_t before = allocations();
 //   ...
 //   EXPECT_EQ(allocations() - before, 0);
-#ifndef SIMBENCH_TESTS_SIM_ENGINE_COUNTING_NEW_H_
-#define SIMBENCH_TESTS_SIM_ENGINE_COUNTING_NEW_H_
+#pragma once
 
 #include <cstdint>
 
@@ -14,5 +13,3 @@ namespace simbench::sim {
 std::uint64_t allocations();
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_ENGINE_COUNTING_NEW_H_

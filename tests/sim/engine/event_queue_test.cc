@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <queue>
-#include <string>
 #include <vector>
 
 #include "sim/engine/random.h"

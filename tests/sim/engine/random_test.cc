@@ -3,12 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <functional>
-#include <random>
 #include <set>
-#include <vector>
 
 #include "tests/first_draws.h"
 

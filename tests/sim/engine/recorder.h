@@ -1,6 +1,5 @@
 // An event handler that writes down what it gets, for the tests of the engine.
-#ifndef SIMBENCH_TESTS_SIM_ENGINE_RECORDER_H_
-#define SIMBENCH_TESTS_SIM_ENGINE_RECORDER_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -36,5 +35,3 @@ class Recorder : public EventHandler {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_ENGINE_RECORDER_H_

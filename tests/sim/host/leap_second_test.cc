@@ -1,3 +1,4 @@
+
 #include "sim/host/leap_second.h"
 
 #include <gtest/gtest.h>

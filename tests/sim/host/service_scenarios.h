@@ -1,6 +1,5 @@
 // The worlds in which services of host_sync are tested.
-#ifndef SIMBENCH_TESTS_SIM_HOST_SERVICE_SCENARIOS_H_
-#define SIMBENCH_TESTS_SIM_HOST_SERVICE_SCENARIOS_H_
+#pragma once
 
 #include "tests/sim/host/sim_world.h"
 
@@ -41,5 +40,3 @@ inline scenarios::Scenario chrony_world(double jitter_s, double wander) {
 }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_HOST_SERVICE_SCENARIOS_H_

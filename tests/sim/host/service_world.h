@@ -4,8 +4,7 @@
 //   world.start(service);
 //   world.run_until(3600);
 //   EXPECT_LT(std::abs(world.error_s(1)), 1e-3);
-#ifndef SIMBENCH_TESTS_SIM_HOST_SERVICE_WORLD_H_
-#define SIMBENCH_TESTS_SIM_HOST_SERVICE_WORLD_H_
+#pragma once
 
 #include <boost/asio/co_spawn.hpp>
 #include <cstdint>
@@ -77,5 +76,3 @@ class ServiceWorld {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_HOST_SERVICE_WORLD_H_

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
-#include <cmath>
 #include <optional>
 #include <vector>
 

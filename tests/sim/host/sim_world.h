@@ -1,6 +1,5 @@
 // A small world of simulated hosts for tests: no cost, no noise, no latency unless a test says so.
-#ifndef SIMBENCH_TESTS_SIM_HOST_SIM_WORLD_H_
-#define SIMBENCH_TESTS_SIM_HOST_SIM_WORLD_H_
+#pragma once
 
 #include <boost/asio/co_spawn.hpp>
 #include <exception>
@@ -66,5 +65,3 @@ class SimWorld {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_HOST_SIM_WORLD_H_

@@ -1,6 +1,5 @@
 // A network of some hosts, and the ends of its links.
-#ifndef SIMBENCH_TESTS_SIM_NETWORK_PROBE_H_
-#define SIMBENCH_TESTS_SIM_NETWORK_PROBE_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -121,5 +120,3 @@ inline std::vector<double> times(const std::vector<Seen>& seen) {
 }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_NETWORK_PROBE_H_

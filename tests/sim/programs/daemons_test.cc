@@ -1,6 +1,5 @@
 // Debian's chronyd, ntpd and ptp4l, unmodified, in the simulated world: the limits that their own
 // test suites state.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +15,6 @@
 
 #include "scenarios/loader.h"
 #include "sim/programs/find_program.h"
-#include "sim/programs/program_file.h"
 #include "sim/programs/program_sync.h"
 #include "tests/sim/host/service_world.h"
 

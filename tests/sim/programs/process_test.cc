@@ -13,10 +13,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <initializer_list>
 #include <iterator>
 #include <random>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <random>
 #include <string>
-#include <vector>
 
 #include "tests/scratch_folder.h"
 

@@ -8,7 +8,6 @@
 #include <array>
 #include <random>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "recording/event.h"

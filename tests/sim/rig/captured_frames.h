@@ -1,6 +1,5 @@
 // Runs a capture by itself and keeps its frames.
-#ifndef SIMBENCH_TESTS_SIM_RIG_CAPTURED_FRAMES_H_
-#define SIMBENCH_TESTS_SIM_RIG_CAPTURED_FRAMES_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -72,5 +71,3 @@ inline CapturedFrames capture(const scenarios::Scenario& scenario, std::uint64_t
 inline double host_ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_RIG_CAPTURED_FRAMES_H_

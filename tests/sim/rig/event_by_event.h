@@ -1,11 +1,9 @@
 // The cameras' half of a world event by event, as its models state it: the reference for
 // CameraWorld, which goes stage by stage over a period.
-#ifndef SIMBENCH_TESTS_SIM_RIG_EVENT_BY_EVENT_H_
-#define SIMBENCH_TESTS_SIM_RIG_EVENT_BY_EVENT_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "sim/engine/engine.h"
@@ -154,5 +152,3 @@ class EventByEvent {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_RIG_EVENT_BY_EVENT_H_

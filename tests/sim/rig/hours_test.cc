@@ -1,7 +1,6 @@
 // Captures of hours: counters that wrap, skews that add up.
 #include <gtest/gtest.h>
 
-#include <set>
 #include <vector>
 
 #include "algorithms/device_time/unwrap.h"

@@ -1,6 +1,5 @@
 // A scenario without any noise, for tests that switch on one effect at a time.
-#ifndef SIMBENCH_TESTS_SIM_RIG_IDEAL_SCENARIO_H_
-#define SIMBENCH_TESTS_SIM_RIG_IDEAL_SCENARIO_H_
+#pragma once
 
 #include "scenarios/scenario.h"
 
@@ -62,5 +61,3 @@ inline scenarios::Scenario ideal_scenario() {
 }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_RIG_IDEAL_SCENARIO_H_

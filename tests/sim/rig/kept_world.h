@@ -1,6 +1,5 @@
 // An observer that keeps what it is notified of.
-#ifndef SIMBENCH_TESTS_SIM_RIG_KEPT_WORLD_H_
-#define SIMBENCH_TESTS_SIM_RIG_KEPT_WORLD_H_
+#pragma once
 
 #include <vector>
 
@@ -38,5 +37,3 @@ class KeptWorld final : public WorldObserver {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_RIG_KEPT_WORLD_H_

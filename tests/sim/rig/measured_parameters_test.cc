@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "tests/nonempty.h"
 #include "tests/sim/rig/captured_frames.h"

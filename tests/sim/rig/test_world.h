@@ -1,6 +1,5 @@
 // Whole simulated runs for tests: a recording kept as lists, and a service made of functions.
-#ifndef SIMBENCH_TESTS_SIM_RIG_TEST_WORLD_H_
-#define SIMBENCH_TESTS_SIM_RIG_TEST_WORLD_H_
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -74,5 +73,3 @@ inline RecordingCost run_world(const scenarios::Scenario& scenario, HostSync* ho
 }
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_RIG_TEST_WORLD_H_

@@ -1,6 +1,5 @@
 // A recording as text, with all that is in it and in its order: for comparing whole recordings.
-#ifndef SIMBENCH_TESTS_SIM_RIG_WRITTEN_RECORDING_H_
-#define SIMBENCH_TESTS_SIM_RIG_WRITTEN_RECORDING_H_
+#pragma once
 
 #include <fmt/format.h>
 
@@ -33,5 +32,3 @@ class WrittenRecording final : public TestSink {
 };
 
 }  // namespace simbench::sim
-
-#endif  // SIMBENCH_TESTS_SIM_RIG_WRITTEN_RECORDING_H_

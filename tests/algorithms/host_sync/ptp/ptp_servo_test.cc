@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "algorithms/host_sync/ptp/ptp_port.h"
 #include "tests/data/test_data.h"

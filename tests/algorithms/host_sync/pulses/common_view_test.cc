@@ -5,9 +5,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <cmath>
 #include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "algorithms/host_sync/pulses/gnss.h"
 #include "tests/algorithms/host_sync/closed_loop.h"

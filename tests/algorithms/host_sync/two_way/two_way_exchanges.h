@@ -1,6 +1,5 @@
 // Makes two-way exchanges between two clocks that are known exactly.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_EXCHANGES_H_
-#define SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_EXCHANGES_H_
+#pragma once
 
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
 
@@ -23,5 +22,3 @@ inline TwoWayExchange exchange_at(const ClockLine& remote, SteadyTime sent, Nano
 inline SteadyTime at_second(double seconds) { return SteadyTime(from_ms(seconds * 1e3)); }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_EXCHANGES_H_

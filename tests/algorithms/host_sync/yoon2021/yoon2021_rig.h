@@ -3,8 +3,7 @@
 // g: occupancy of a send, L: latency, w: wake-up, c: cost of a set, of which the first quarter
 // passes before the new value counts. From the reading of T_m to that instant pass g + L + w + c/4:
 // the delay really needed. The slave's error is t_d minus that.
-#ifndef SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_YOON2021_YOON2021_RIG_H_
-#define SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_YOON2021_YOON2021_RIG_H_
+#pragma once
 
 #include "algorithms/host_sync/yoon2021/yoon2021.h"
 #include "tests/algorithms/host_sync/script_host.h"
@@ -34,5 +33,3 @@ inline Yoon2021Settings settings_for(bool network, bool time) {
 }
 
 }  // namespace simbench
-
-#endif  // SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_YOON2021_YOON2021_RIG_H_
