@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "algorithms/ports/stage.h"
+#include "cli/messages.h"
 #include "scenarios/loader.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the parser calls it so

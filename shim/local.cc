@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <cstddef>
+#include <initializer_list>
 
 namespace simbench::shim {
 namespace {

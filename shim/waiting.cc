@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <initializer_list>
+
 #include "shim/link.h"
 #include "shim/own_clock.h"
 #include "shim/refused_calls.h"

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "recording/counted.h"
 #include "reports/recordings/diagnose_report.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "evaluation/scoring/results.h"
+#include "recording/counted.h"
 
 namespace simbench::reports {
 

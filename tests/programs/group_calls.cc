@@ -2,6 +2,7 @@
 //
 //   group_calls answer   answers what comes for the group or for all
 //   group_calls check
+#include <initializer_list>
 
 #include "tests/programs/promises.h"
 
