@@ -13,6 +13,7 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
+#include "app/sync_mode_worlds.h"
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
@@ -47,6 +48,7 @@ using scenarios::Scenario;
 constexpr double kSameAmd = 1e-9;
 
 constexpr const char* kBudget = "budget";
+constexpr const char* kClocks = "digital_clocks";
 constexpr std::size_t kMostNotes = 6;
 
 // The ids of the wanted figures.
@@ -57,6 +59,13 @@ std::vector<std::string> wanted_ids(const FigureOptions& options) {
   }
   for (const std::string& name : options.figures) ids.push_back(reports::figure_named(name).id);
   return ids;
+}
+
+// Refuses numbers of the paper that are of another frame rate.
+void check_rates(const FigureOptions& options, const Scenario& scenario) {
+  for (const std::string& name : options.figures) {
+    reports::check_rate(reports::figure_named(name), name, scenario.trigger.rate_hz);
+  }
 }
 
 // The pipeline's AMD at this seed; nothing if the results have none.
@@ -79,6 +88,9 @@ class FigureMaker {
   FigureMaker(const Archive& archive, const FigureOptions& options,
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
+
+  // The frame rate of all figures, which tells which of the paper's they are.
+  void set_rate(double rate_hz) { rate_hz_ = rate_hz; }
 
   // Takes runs from this in place of the simulator.
   void take_runs_from(evaluation::WorldFactory make_world) { make_world_ = std::move(make_world); }
@@ -104,8 +116,14 @@ class FigureMaker {
   void add_run_figures(const Scenario& scenario) {
     const std::vector<PipelineChoice> choices =
         evaluation::choose_pipelines(scenario, options_.pipelines);
-    if (wants_scope(FigureScope::kRun) || wants("synchronisation") || wants("digital_clocks")) {
-      for (const std::uint64_t seed : options_.seeds) add_seed(scenario, choices, seed);
+    std::vector<ModeWorld> modes;
+    if (options_.all_sync_modes && wants(kClocks)) modes = sync_mode_worlds(scenario, made_.notes);
+    const bool of_one_mode = wants(kClocks) && modes.empty();
+    for (const std::uint64_t seed : options_.seeds) {
+      if (wants_scope(FigureScope::kRun) || wants("synchronisation") || of_one_mode) {
+        add_seed(scenario, choices, seed, of_one_mode);
+      }
+      if (!modes.empty()) add_clocks_of(modes, seed);
     }
     if (!wants(kBudget) || options_.budget_seeds == 0) return;
     add_budgets(scenario, choices);
@@ -152,6 +170,7 @@ class FigureMaker {
     for (Figure& figure : figures) {
       if (!wants(figure.id)) continue;
       figure.source = source;
+      if (rate_hz_) place_in_paper(figure, *rate_hz_);
       if (!figure.pipeline.empty()) figure.source.pipeline = figure.pipeline;
       if (figure.seed) {
         figure.source.first_seed = *figure.seed;
@@ -161,8 +180,32 @@ class FigureMaker {
     }
   }
 
+  // Which of the paper's figures it is; and if none is at this rate, which there are.
+  static void place_in_paper(Figure& figure, double rate_hz) {
+    const FigureEntry& entry = *reports::find_figure(figure.id);
+    figure.paper = paper_numbers(entry, rate_hz);
+    if (!figure.paper.empty() || !figure.absent.empty()) return;
+    for (const reports::PaperRate& each : entry.rates) {
+      figure.caption += fmt::format(" The paper's {} is at {:g} Hz, as {}.", each.paper,
+                                    each.rate_hz, each.scenario);
+    }
+  }
+
+  // The same rig in several sync modes.
+  void add_clocks_of(const std::vector<ModeWorld>& modes, std::uint64_t seed) {
+    std::vector<RunDetail> runs;
+    for (const ModeWorld& mode : modes) {
+      const std::unique_ptr<RecordingSource> source = make_world_(mode.scenario);
+      for (const PipelineChoice& choice :
+           evaluation::choose_pipelines(mode.scenario, mode.pipelines)) {
+        runs.push_back(evaluation::run_detail(mode.scenario, choice, seed, *source));
+      }
+    }
+    add({reports::digital_clocks(runs)}, source_of_repeated_run());
+  }
+
   void add_seed(const Scenario& scenario, const std::vector<PipelineChoice>& choices,
-                std::uint64_t seed) {
+                std::uint64_t seed, bool with_clocks) {
     std::vector<RunDetail> made(choices.size());
     std::mutex mutex;  // of the progress
     const auto make_worker = [&]() -> evaluation::Job {
@@ -181,7 +224,11 @@ class FigureMaker {
     }
     const FigureSource source = source_of_repeated_run();
     for (const RunDetail& run : runs) add(reports::run_figures(run), source);
-    if (!runs.empty()) add(reports::seed_figures(runs), source);
+    if (runs.empty()) return;
+    std::vector<Figure> compared = reports::seed_figures(runs);
+    if (!with_clocks)
+      std::erase_if(compared, [](const Figure& each) { return each.id == kClocks; });
+    add(std::move(compared), source);
   }
 
   void add_budgets(const Scenario& scenario, const std::vector<PipelineChoice>& choices) {
@@ -213,6 +260,7 @@ class FigureMaker {
   const evaluation::Progress& progress_;
   std::vector<std::string> wanted_;
   evaluation::WorldFactory make_world_ = simulated_world;
+  std::optional<double> rate_hz_;
   std::uint64_t runs_ = 0;
   ArchiveFigures made_;
 };
@@ -275,12 +323,19 @@ ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
   check_seeds(archive, chosen);
   const bool has_manifest = !archive.scenario_json.empty();
   if (has_manifest && !has_seed_details(archive)) reports::read_seed_details(archive);
+  const bool of_files = reports::is_of_files(archive);
+  std::optional<Scenario> scenario;  // whose runs can be repeated
+  if (has_manifest && !of_files) scenario = scenario_of(archive);
   FigureMaker maker(archive, chosen, progress);
+  if (scenario) {
+    check_rates(options, *scenario);
+    maker.set_rate(scenario->trigger.rate_hz);
+  }
   maker.add_result_figures();
-  if (reports::is_of_files(archive)) {
+  if (of_files) {
     maker.note(files_note(archive));
-  } else if (has_manifest) {
-    maker.add_run_figures(scenario_of(archive));
+  } else if (scenario) {
+    maker.add_run_figures(*scenario);
   } else {
     maker.note(
         fmt::format("{} has no manifest: figures that need a repeated run are left out; `simbench "
@@ -300,7 +355,9 @@ ArchiveFigures recording_figures(const RecordedRun& run, const FigureOptions& op
   archive.results.first_seed = run.first_seed();
   archive.results.seed_count = run.seeds();
   check_seeds(archive, chosen);
+  check_rates(options, run.scenario());
   FigureMaker maker(archive, chosen, progress);
+  maker.set_rate(run.scenario().trigger.rate_hz);
   if (maker.wants("distributions") || maker.wants("host_order") || maker.wants("frame_errors")) {
     archive.results = run.evaluate(chosen.pipelines, true, progress);
   }
@@ -316,8 +373,10 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
                                 std::uint64_t over_seeds, const evaluation::Progress& progress) {
   FigureOptions chosen = options;
   if (chosen.seeds.empty()) chosen.seeds = {1};
+  check_rates(options, scenario);
   Archive archive = archive_without_runs(scenario, scenario.name);
   FigureMaker maker(archive, chosen, progress);
+  maker.set_rate(scenario.trigger.rate_hz);
   const bool over = maker.wants("distributions") || maker.wants("host_order");
   if (over || maker.wants("frame_errors")) {
     const auto [first, last] = std::minmax_element(chosen.seeds.begin(), chosen.seeds.end());

@@ -37,6 +37,9 @@ struct FigureOptions {
   std::vector<std::string> pipelines{};  // to show in detail; empty: all
   std::uint64_t budget_seeds = 0;        // for error budgets (136 runs each); 0: no budgets
   std::vector<std::string> figures{};    // by id or alias; empty: all
+  // Whether digital_clocks shows a rig of depth and colour in all sync modes of its cameras
+  // (sync_mode_worlds.h); else in its own. Not of recordings.
+  bool all_sync_modes = false;
 };
 
 struct ArchiveFigures {

@@ -79,7 +79,7 @@ const std::vector<CommandGroup>& command_groups() {
   static const std::vector<CommandGroup> groups = {
       {"Run",
        {cli::add_run_command, cli::add_sweep_command, cli::add_clocks_command,
-        cli::add_reconstruct_command, cli::add_advise_command}},
+        cli::add_reconstruct_command, cli::add_paper_command, cli::add_advise_command}},
       {"Look at results",
        {cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
       {"Compare results", {cli::add_compare_command, cli::add_gate_command}},

@@ -36,15 +36,16 @@ void UsbController::serve_until(Nanoseconds now) {
   served_until_ = now;
 }
 
-bool UsbController::submit(Nanoseconds now, std::size_t stream, double bytes,
-                           std::uint32_t ticket) {
+bool UsbController::submit(Nanoseconds now, std::size_t stream, double bytes, std::uint32_t ticket,
+                           Nanoseconds latest) {
   if (pending_of_stream_[stream] >= settings_.buffered_frames) return false;
-  double done_at = 0;
+  double& free_at = free_at_ns(stream);
+  double done_at = queued_on(free_at, now, bytes / settings_.bytes_per_ns);
+  if (whole(done_at) > latest) return false;
+  free_at = done_at;
   if (settings_.is_fair) {
     serve_until(now);
     done_at = served_bytes_ + bytes;
-  } else {
-    done_at = queue_on_lane(stream / settings_.streams_per_lane, now, bytes);
   }
   ++pending_of_stream_[stream];
   pending_.push_back({done_at, submissions_++, ticket, static_cast<std::uint32_t>(stream)});

@@ -7,8 +7,13 @@
 //    all streams is a FIFO bus;
 //  - fair: all pending frames advance at an equal share (processor sharing).
 //
-// A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
-// an incomplete frame is on an overloaded bus.
+// A frame is lost in two ways:
+//  - dropped: its stream has `buffered_frames` transfers pending and cannot take another;
+//  - incomplete: all that its lane (under fair sharing the controller) then has to transfer, the
+//    frame included, would be through only after `latest`, to which its camera can hold it. It
+//    takes no bandwidth.
+// A controller carries what it is offered in whole frames, so of an endless overload at least
+// 1 - bandwidth / offered is lost, however it is shared, and exactly that while it is never idle.
 //
 // The controller is a passive model; its times count from a zero of the caller's. Its owner submits
 // frames and comes back at wake_up() to collect the completed transfers, all of it in order of
@@ -45,19 +50,20 @@ class UsbController {
   UsbController(const UsbSettings& settings, std::size_t streams);
 
   // Stream `stream` offers a frame of `bytes` with the number `ticket`. False: it was lost.
-  bool submit(Nanoseconds now, std::size_t stream, double bytes, std::uint32_t ticket);
+  bool submit(Nanoseconds now, std::size_t stream, double bytes, std::uint32_t ticket,
+              Nanoseconds latest = Nanoseconds::max());
 
   // The common case at once: if nothing is pending and the frame, which alone takes that long,
-  // completes before that, whatever else is offered, it does so and this returns when. Else nothing
-  // happens and this returns Nanoseconds::max(): submit() it. Until then the stream must not offer
-  // another.
-  Nanoseconds pass(Nanoseconds now, std::size_t stream, double transfer_ns, Nanoseconds before) {
+  // completes until `latest`, whatever else is offered, it does so and this returns when. Else
+  // nothing happens and this returns Nanoseconds::max(): submit() it. Until then the stream must
+  // not offer another.
+  Nanoseconds pass(Nanoseconds now, std::size_t stream, double transfer_ns, Nanoseconds latest) {
     if (!pending_.empty() || settings_.is_fair) return Nanoseconds::max();
-    double& free_at_ns = lane_free_at_ns_[stream / settings_.streams_per_lane];
-    const double done_at_ns = queued_on(free_at_ns, now, transfer_ns);
+    double& free_at = free_at_ns(stream);
+    const double done_at_ns = queued_on(free_at, now, transfer_ns);
     const Nanoseconds done = whole(done_at_ns);
-    if (done >= before) return Nanoseconds::max();
-    free_at_ns = done_at_ns;
+    if (done > latest) return Nanoseconds::max();
+    free_at = done_at_ns;
     return done;
   }
 
@@ -88,9 +94,9 @@ class UsbController {
   static double queued_on(double free_at_ns, Nanoseconds now, double transfer_ns) {
     return std::max(free_at_ns, to_ns(now)) + transfer_ns;
   }
-  double queue_on_lane(std::size_t lane, Nanoseconds now, double bytes) {
-    return lane_free_at_ns_[lane] =
-               queued_on(lane_free_at_ns_[lane], now, bytes / settings_.bytes_per_ns);
+  // Under fair sharing all is one lane: when it is free does not depend on who is served first.
+  double& free_at_ns(std::size_t stream) {
+    return lane_free_at_ns_[settings_.is_fair ? 0 : stream / settings_.streams_per_lane];
   }
   void serve_until(Nanoseconds now);
 
@@ -98,7 +104,7 @@ class UsbController {
   std::vector<Transfer> pending_;  // a min-heap by (done_at, order)
   std::vector<std::uint32_t> pending_of_stream_;
   std::uint64_t submissions_ = 0;
-  std::vector<double> lane_free_at_ns_;  // of each lane
+  std::vector<double> lane_free_at_ns_;  // when all that is pending on it is through
   double served_bytes_ = 0;              // fair: to each pending transfer
   Nanoseconds served_until_{};           // fair
   Nanoseconds wake_up_ = Nanoseconds::max();

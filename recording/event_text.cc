@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kFrameKind = "frame";
 // The kinds of RecordingEvent, in its order.
 constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
-    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led"};
+    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays"};
 static_assert(!kKinds.back().empty(), "every event has a kind");
 
 template <class Value, class Event>
@@ -100,6 +100,18 @@ void members(const auto& form, Any<LedSighting> auto& sighting) {
   form("led_end_ns", sighting.led_end_ns);
 }
 
+void members(const auto& form, Any<SessionDelays> auto& delays) {
+  form("slave", delays.slave);
+  form("pass", delays.pass);
+  form("begin_steady_ns", delays.begin);
+  form("end_steady_ns", delays.end);
+  form("t_l_ns", delays.t_l);
+  form("t_t_ns", delays.t_t);
+  form("t_d_ns", delays.t_d);
+  form("get_ns", delays.get);
+  form("set_ns", delays.set);
+}
+
 constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamKind::kDepth),
                                                       scenarios::to_text(StreamKind::kColour)};
 constexpr std::array<std::string_view, 3> kDomains = {"hardware_clock", "system_time",
@@ -172,6 +184,9 @@ struct Writer {
     line += ',';
     append_escaped(line, text);
   }
+  void operator()(const char* /*name*/, Nanoseconds interval) const {
+    append_field(line, interval.count());
+  }
   void operator()(const char* /*name*/, const std::vector<Nanoseconds>& values) const {
     append_list(line, values);
   }
@@ -191,6 +206,9 @@ struct Reader {
   void operator()(const char* name, bool& flag) const { flag = read_flag(fields, name); }
   void operator()(const char* name, double& value) const { value = fields.finite(name); }
   void operator()(const char* name, std::string& text) const { text = fields.text(name); }
+  void operator()(const char* name, Nanoseconds& interval) const {
+    interval = Nanoseconds(fields.whole<std::int64_t>(name));
+  }
   void operator()(const char* name, std::vector<Nanoseconds>& values) const {
     values = read_list(fields, name);
   }

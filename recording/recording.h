@@ -123,13 +123,14 @@ struct ExchangeEvent {
 //   DevicePoll       a reading of a camera's clock
 //   ExchangeEvent    an exchange of host synchronisation
 //   SyncOutcome      how host synchronisation ended on a slave
+//   SessionDelays    what a slave measured in a pass of a session of Algorithms 1 and 2, and added
 //   AlignmentReport  how far a steered camera is; steered captures only
 //   LedSighting      captures with a clock of LEDs only; after its frame, before the camera's next
 //
 // A new kind is a struct, a place here and its line of text (event_text.cc): what keeps, writes,
 // forwards and forks events takes it from there.
 using RecordingEvent = std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent,
-                                    SyncOutcome, AlignmentReport, LedSighting>;
+                                    SyncOutcome, AlignmentReport, LedSighting, SessionDelays>;
 
 // Handles an event by its type:
 //

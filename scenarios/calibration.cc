@@ -42,13 +42,15 @@ class Uniform {
 struct Offer {
   double at_ms = 0;
   double transfer_ms = 0;
+  double hold_ms = 0;        // that it may take then; 0: any time
   bool is_measured = false;  // of the stream whose delay is asked for
   double delay_ms = 0;       // end of exposure to offer; then also to the end of the transfer
 };
 
 bool sooner(const Offer& a, const Offer& b) { return a.at_ms < b.at_ms; }
 
-// Adds to each delay how long the transfer takes. Offers come in order of time; none is lost.
+// Adds to each delay how long the transfer takes. Offers come in order of time; one that the bus
+// does not take in time is not measured, and no buffer is full.
 void transfer(std::vector<Offer>& offers, UsbSharing sharing) {
   UsbController controller({.bytes_per_ns = 1,
                             .buffered_frames = static_cast<std::uint32_t>(offers.size()),
@@ -65,7 +67,11 @@ void transfer(std::vector<Offer>& offers, UsbSharing sharing) {
   for (std::uint32_t i = 0; i < offers.size(); ++i) {
     const Nanoseconds at = from_ms(offers[i].at_ms);
     complete_before(at);
-    controller.submit(at, 0, offers[i].transfer_ms * 1e6, i);
+    const Nanoseconds latest =
+        offers[i].hold_ms > 0 ? at + from_ms(offers[i].hold_ms) : Nanoseconds::max();
+    if (!controller.submit(at, 0, offers[i].transfer_ms * 1e6, i, latest)) {
+      offers[i].is_measured = false;
+    }
   }
   complete_before(Nanoseconds::max());
 }
@@ -99,6 +105,7 @@ std::vector<Offer> offers_of_pulse(const Scenario& scenario, const Stream& strea
       const double delay_ms = latency_ms(other) + late_ms;
       offers.push_back({.at_ms = exposed_ms + rows_ms + delay_ms,
                         .transfer_ms = transfer_ms(scenario, other),
+                        .hold_ms = scenario.usb.hold_mode_periods * 1e3 / other.mode_rate_hz,
                         .is_measured = is_measured,
                         .delay_ms = delay_ms});
     }

@@ -15,6 +15,7 @@
 #include "scenarios/frame_control_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/published_checks.h"
+#include "scenarios/pulse_window.h"
 #include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
 #include "scenarios/schema_walk.h"
@@ -372,11 +373,6 @@ void check_pipelines(const Scenario& scenario) {
   check_published(scenario);
 }
 
-// Slaves accept pulses in a window that Intel's page on external synchronisation calls "so strict"
-// without its size: 1 % is an assumption.
-constexpr double kRateTolerance = 0.01;
-constexpr double kRounding = 1e-9;
-
 void check_profile(const Scenario& scenario, const CameraProfile& camera,
                    const std::string& pointer, const Stream& stream) {
   const StreamProfile* profile = camera.stream(stream.kind);
@@ -426,20 +422,8 @@ const CameraProfile& checked_profile(const Scenario& scenario) {
                       fmt::join(models, ", ")));
 }
 
-// Genlock answers at most one pulse in two frame times (librealsense #12560).
-void check_genlock(const Scenario& scenario, const Stream& stream) {
-  const double guard = scenario.cameras.genlock_guard_fraction;
-  const double fastest = stream.mode_rate_hz / 2 / (1 - guard);
-  const double rate = scenario.trigger.pulse_rate_hz();
-  if (rate <= fastest * (1 + kRounding)) return;
-  fail_at(scenario, "/trigger/rate_hz",
-          fmt::format("found {:.6g} Hz, allowed at most {:.6g} Hz: genlock in a {} Hz mode ignores "
-                      "pulses for two mode periods less the guard of {}",
-                      rate, fastest, stream.mode_rate_hz, guard));
-}
-
-// Slaves follow pulses close to their mode rate. An evaluated stream that runs free keeps its mode
-// rate, which must then be the evaluated rate.
+// Slaves follow pulses close to their mode rate; of faster ones they answer some (warnings.cc). An
+// evaluated stream that runs free keeps its mode rate, which must then be the evaluated rate.
 void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
                      const std::string& pointer, const Stream& stream) {
   const std::vector<double>& rates = camera.sync_rates_hz;
@@ -450,17 +434,17 @@ void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
             fmt::format("found {}, allowed {} in sync mode \"{}\"", stream.mode_rate_hz,
                         fmt::join(rates, ", "), to_text(mode)));
   }
-  if (!scenario.cameras.follows_trigger(stream) && stream.kind != scenario.evaluation.stream) {
-    return;
-  }
+  const bool follows_trigger = scenario.cameras.follows_trigger(stream);
+  if (!follows_trigger && stream.kind != scenario.evaluation.stream) return;
   const double rate = scenario.trigger.pulse_rate_hz();
-  if (std::abs(rate / stream.mode_rate_hz - 1) <= kRateTolerance + kRounding) return;
-  fail_at(
-      scenario, "/trigger/rate_hz",
-      fmt::format("found {:.6g} Hz, allowed {:.6g} to {:.6g} Hz in sync mode \"{}\" with a {} "
-                  "Hz mode",
-                  rate, stream.mode_rate_hz * (1 - kRateTolerance),
-                  stream.mode_rate_hz * (1 + kRateTolerance), to_text(mode), stream.mode_rate_hz));
+  const PulseWindow window(stream.mode_rate_hz);
+  if (!window.is_slower(rate) && (follows_trigger || !window.is_faster(rate))) return;
+  fail_at(scenario, "/trigger/rate_hz",
+          fmt::format("found {:.6g} Hz, allowed {} in sync mode \"{}\" with a {} Hz mode", rate,
+                      follows_trigger ? fmt::format("at least {:.6g} Hz", window.slowest_hz)
+                                      : fmt::format("{:.6g} to {:.6g} Hz", window.slowest_hz,
+                                                    window.fastest_hz),
+                      to_text(mode), stream.mode_rate_hz));
 }
 
 // The model and its sync mode, the sizes and rates of the streams.
@@ -474,8 +458,6 @@ void check_rates(const Scenario& scenario) {
     check_profile(scenario, camera, pointer, stream);
     if (cameras.sync_mode != SyncMode::kGenlock) {
       check_full_rate(scenario, camera, pointer, stream);
-    } else if (cameras.follows_trigger(stream)) {
-      check_genlock(scenario, stream);
     }
   }
 }

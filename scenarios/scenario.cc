@@ -1,6 +1,7 @@
 #include "scenarios/scenario.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "scenarios/camera_profile.h"
@@ -40,6 +41,23 @@ std::vector<std::size_t> Scenario::cameras_by_host() const {
     ++counts.at(static_cast<std::size_t>(host_of(camera)));
   }
   return counts;
+}
+
+double Scenario::fastest_pulses_hz(const Stream& stream) const {
+  const double ignored_periods = cameras.sync_mode == SyncMode::kGenlock ? 2 : 1;
+  return stream.mode_rate_hz / ignored_periods / (1 - cameras.genlock_guard_fraction);
+}
+
+std::int64_t Scenario::pulses_per_frame(const Stream& stream) const {
+  constexpr double kRounding = 1e-9;
+  if (!cameras.follows_trigger(stream)) return 1;
+  const double pulses = trigger.pulse_rate_hz() / fastest_pulses_hz(stream);
+  return std::max<std::int64_t>(1, std::llround(std::ceil(pulses * (1 - kRounding))));
+}
+
+double Scenario::frame_rate_hz(const Stream& stream) const {
+  if (!cameras.follows_trigger(stream)) return stream.mode_rate_hz;
+  return trigger.pulse_rate_hz() / static_cast<double>(pulses_per_frame(stream));
 }
 
 }  // namespace simbench::scenarios

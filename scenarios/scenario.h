@@ -19,6 +19,7 @@
 // section 7.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -94,16 +95,23 @@ struct Scenario {
   std::vector<std::size_t> cameras_by_host() const;
   // Whether each pipeline draws a load of its own, which its sends, messages and settings of clocks
   // meet (sim/network/load.h).
+  static constexpr std::array kLoadMembers = {"/hosts/send_cost_session_exponential_ms",
+                                              "/network/latency_session_exponential_ms",
+                                              "/hosts/clock/set_cost_session_log_sigma"};
   bool draws_load() const {
     return hosts.send_cost_session_exponential_ms > 0 ||
            network.latency_session_exponential_ms > 0 || hosts.clock.set_cost_session_log_sigma > 0;
   }
   // The scored stream; a loaded scenario has it.
   const Stream* scored_stream() const { return cameras.stream(evaluation.stream); }
+  // The highest rate of pulses of which a stream that follows the trigger answers each: it ignores
+  // pulses for two mode periods in genlock, for one as a slave, less the guard.
+  double fastest_pulses_hz(const Stream& stream) const;
+  // A stream answers one of so many pulses, if its exposures leave it the time: 1 mostly, and of a
+  // stream that does not follow the trigger.
+  std::int64_t pulses_per_frame(const Stream& stream) const;
   // The rate at which a stream delivers frames if none is lost.
-  double frame_rate_hz(const Stream& stream) const {
-    return cameras.follows_trigger(stream) ? trigger.pulse_rate_hz() : stream.mode_rate_hz;
-  }
+  double frame_rate_hz(const Stream& stream) const;
 };
 
 }  // namespace simbench::scenarios

@@ -10,6 +10,7 @@
 #include "scenarios/camera_profile.h"
 #include "scenarios/frequency_limit.h"
 #include "scenarios/loader.h"
+#include "scenarios/pulse_window.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -35,39 +36,117 @@ std::int64_t most_cameras_on_a_host(const Scenario& scenario) {
   return static_cast<std::int64_t>(*std::max_element(counts.begin(), counts.end()));
 }
 
+// More cameras are reported to lose frames (docs/reference/d455.md section 3).
+constexpr std::int64_t kKnownToWork = 3;
+
+// The rate at which the triggered streams of a camera must be transferred while they are read out,
+// all at once; 0: whenever the controller is free.
+double readout_mb_per_s(const Scenario& scenario) {
+  if (scenario.usb.hold_mode_periods == 0) return 0;
+  double rate = 0;
+  for (const Stream& stream : scenario.cameras.streams) {
+    if (!scenario.cameras.follows_trigger(stream)) continue;
+    rate += stream.image_bytes() * stream.mode_rate_hz * 1e-6 / scenario.usb.hold_mode_periods;
+  }
+  return rate;
+}
+
+std::string cameras_text(std::int64_t count) {
+  return count == 1 ? "1 camera" : fmt::format("{} cameras", count);
+}
+
+void warn_about_shared_usb(Lines& lines, const Scenario& scenario, std::int64_t cameras) {
+  const double carried = scenario.usb.bandwidth_mb_per_s;
+  const double needed = camera_load_mb_per_s(scenario) * static_cast<double>(cameras);
+  const double at_once = readout_mb_per_s(scenario) * static_cast<double>(cameras);
+  const std::string need = fmt::format("{} on a controller {} {:.1f} MB/s", cameras_text(cameras),
+                                       cameras == 1 ? "needs" : "need", std::max(needed, at_once));
+  if (at_once > std::max(carried, needed)) {
+    warn(
+        lines, scenario, "/usb/bandwidth_mb_per_s",
+        fmt::format("{} while the frames of a pulse are read out (the rates of their modes; {:.1f} "
+                    "MB/s on average), and it carries {:g}: expect at least {:.1f} % of these "
+                    "frames to arrive incomplete, which the SDK discards "
+                    "(/usb/hold_mode_periods)",
+                    need, needed, carried, 100 * (1 - carried / at_once)));
+  } else if (needed > carried) {
+    warn(lines, scenario, "/usb/bandwidth_mb_per_s",
+         fmt::format("{}, and it carries {:g}: expect at least {:.1f} % of the frames to be lost",
+                     need, carried, 100 * (1 - carried / needed)));
+  } else if (cameras > kKnownToWork) {
+    warn(lines, scenario, "/usb/cameras_per_controller",
+         fmt::format("{} of the {:g} that it carries, so none is lost on it here; real "
+                     "controllers with more than {} are reported to lose some "
+                     "(docs/reference/d455.md section 3)",
+                     need, carried, kKnownToWork));
+  }
+}
+
+// Where each camera has the whole bandwidth, no number of cameras is too many.
+void warn_about_dedicated_usb(Lines& lines, const Scenario& scenario) {
+  constexpr const char* kPointer = "/usb/cameras_per_controller";
+  const std::vector<Change>& changes = scenario.derivation.changes;
+  const bool is_changed = std::ranges::count(changes, kPointer, &Change::pointer) > 0;
+  const std::int64_t most = most_cameras_on_a_host(scenario);
+  if (!is_changed && most <= kKnownToWork) return;
+  warn(lines, scenario, is_changed ? kPointer : "/usb/sharing",
+       fmt::format("each camera has {:g} MB/s of its own (/usb/sharing is \"dedicated\"), so "
+                   "{} changes nothing: \"fair\" and \"fifo\" share a controller",
+                   scenario.usb.bandwidth_mb_per_s,
+                   is_changed ? "/usb/cameras_per_controller"
+                              : fmt::format("that {} are on a host", cameras_text(most))));
+}
+
 void warn_about_usb(Lines& lines, const Scenario& scenario) {
   const Usb& usb = scenario.usb;
-  constexpr std::int64_t kKnownToWork = 3;
-  std::int64_t sharers = 1;
-  if (usb.sharing != UsbSharing::kDedicated) {
-    sharers = std::min(usb.cameras_per_controller, most_cameras_on_a_host(scenario));
+  if (usb.sharing == UsbSharing::kDedicated) {
+    warn_about_shared_usb(lines, scenario, 1);
+    warn_about_dedicated_usb(lines, scenario);
+  } else {
+    warn_about_shared_usb(lines, scenario,
+                          std::min(usb.cameras_per_controller, most_cameras_on_a_host(scenario)));
   }
-  const double offered = camera_load_mb_per_s(scenario) * static_cast<double>(sharers);
-  if (offered > usb.bandwidth_mb_per_s) {
-    warn(lines, scenario, "/usb/bandwidth_mb_per_s",
-         fmt::format("{} camera(s) offer {:.1f} MB/s to a controller that carries {:g}: expect "
-                     "{:.1f} % of their frames to be dropped",
-                     sharers, offered, usb.bandwidth_mb_per_s,
-                     100 * (1 - usb.bandwidth_mb_per_s / offered)));
-  } else if (sharers > kKnownToWork) {
-    warn(lines, scenario, "/usb/cameras_per_controller",
-         fmt::format(
-             "{} cameras share a controller; real controllers with more than {} are reported "
-             "to give incomplete frames and drops (librealsense #4627), which the model does "
-             "not show",
-             sharers, kKnownToWork));
+}
+
+// Pulses that come too fast for the mode of a stream, which never expose it.
+void warn_about_pulses(Lines& lines, const Scenario& scenario) {
+  const Cameras& cameras = scenario.cameras;
+  const double rate = scenario.trigger.pulse_rate_hz();
+  const bool is_genlock = cameras.sync_mode == SyncMode::kGenlock;
+  for (const Stream& stream : cameras.streams) {
+    if (!cameras.follows_trigger(stream)) continue;
+    const std::int64_t pulses = scenario.pulses_per_frame(stream);
+    const PulseWindow window(stream.mode_rate_hz);
+    if (is_genlock ? pulses == 1 : !window.is_faster(rate)) continue;
+    warn(lines, scenario, "/trigger/rate_hz",
+         fmt::format("{} in a {} Hz mode ignores pulses for {} less the guard of {:g}, and so "
+                     "follows at most {:.6g} Hz: of {:.6g} Hz it answers one pulse in {}, {:.6g} "
+                     "frames/s of {}{}{}",
+                     to_text(cameras.sync_mode), stream.mode_rate_hz,
+                     is_genlock ? "two mode periods" : "a mode period",
+                     cameras.genlock_guard_fraction, scenario.fastest_pulses_hz(stream), rate,
+                     pulses, scenario.frame_rate_hz(stream), to_text(stream.kind),
+                     is_genlock ? " (librealsense #12560)"
+                                : fmt::format("; what a real one does beyond {:.6g} Hz is not "
+                                              "documented",
+                                              window.fastest_hz),
+                     pulses > 1 && !cameras.common_start
+                         ? "; cameras that start at different pulses expose at different ones"
+                         : ""));
   }
 }
 
 // Exposures that do not end before the next pulse make the camera miss it.
 void warn_about_exposure(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
-  const double period_ms = 1e3 / scenario.trigger.pulse_rate_hz();
   const double readout_ms =
       std::ranges::max_element(cameras.streams, {}, &Stream::readout_ms)->readout_ms;
-  const bool is_triggered = std::ranges::any_of(cameras.streams, [&cameras](const Stream& stream) {
-    return cameras.follows_trigger(stream);
-  });
+  const auto triggered = std::ranges::find_if(
+      cameras.streams, [&](const Stream& stream) { return cameras.follows_trigger(stream); });
+  const bool is_triggered = triggered != cameras.streams.end();
+  const double pulse_period_ms = 1e3 / scenario.trigger.pulse_rate_hz();
+  const double period_ms =
+      is_triggered ? 1e3 / scenario.frame_rate_hz(*triggered) : pulse_period_ms;
   const double start_ms = is_triggered ? cameras.trigger_to_exposure_us * 1e-3 : 0;
   const auto warn_if_longer = [&](const std::string& pointer, double longest_ms) {
     if (start_ms + longest_ms <= period_ms) return;
@@ -78,9 +157,10 @@ void warn_about_exposure(Lines& lines, const Scenario& scenario) {
                     "(realsense-ros #2612)",
                     longest_ms, start_ms, period_ms));
   };
-  warn_if_longer("/cameras/exposure_ms",
-                 readout_ms + cameras.exposure_ms +
-                     (cameras.exposure_camera_periods + cameras.exposure_host_periods) * period_ms);
+  warn_if_longer(
+      "/cameras/exposure_ms",
+      readout_ms + cameras.exposure_ms +
+          (cameras.exposure_camera_periods + cameras.exposure_host_periods) * pulse_period_ms);
   if (cameras.auto_exposure.is_on()) {
     warn_if_longer("/cameras/auto_exposure/max_ms", readout_ms + cameras.auto_exposure.max_ms);
   }
@@ -261,6 +341,7 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
 std::vector<std::string> warnings(const Scenario& scenario) {
   Lines lines;
   warn_about_usb(lines, scenario);
+  warn_about_pulses(lines, scenario);
   warn_about_exposure(lines, scenario);
   warn_about_shutters(lines, scenario);
   warn_about_capture_traffic(lines, scenario);

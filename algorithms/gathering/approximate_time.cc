@@ -15,7 +15,7 @@ class ApproximateTimeGatherer final : public Gatherer {
  public:
   ApproximateTimeGatherer(const GatheringSetup& setup, const ApproximateTimeOptions& options)
       : sources_(setup.sources),
-        limit_(std::min(options.queue, setup.queue_limit)),
+        limit_(setup.queue_limit.value_or(options.queue)),
         age_factor_(1 + options.age_penalty),
         max_interval_(options.max_interval.count()),
         queues_(setup.sources, limit_ + 1),

@@ -16,8 +16,8 @@ class EpsilonGatherer final : public Gatherer {
  public:
   explicit EpsilonGatherer(const GatheringSetup& setup)
       : epsilon_(setup.interval.count()),
-        limit_(setup.queue_limit),
-        queues_(setup.sources, setup.queue_limit),
+        limit_(setup.queue_limit.value_or(kRosQueue)),
+        queues_(setup.sources, limit_),
         fronts_(setup.sources) {
     SIMBENCH_ASSERT(epsilon_ >= 0, "no set is narrower than equal stamps");
     given_up_.reserve(setup.sources);

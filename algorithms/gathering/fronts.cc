@@ -2,10 +2,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <optional>
 
 #include "algorithms/ports/assert.h"
 
 namespace simbench {
+namespace {
+
+constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
 
 FrameQueues::FrameQueues(std::uint32_t sources, std::uint32_t capacity) : capacity_(capacity) {
   SIMBENCH_ASSERT(sources > 0, "gathering needs a source");
@@ -24,22 +31,31 @@ std::span<const GatherFrame> FrameQueues::take_fronts() {
   return taken_;
 }
 
-FrontMatcher::FrontMatcher(std::uint32_t sources, std::int64_t tolerance, std::uint32_t queue_limit)
-    : tolerance_(tolerance), ring_size_(queue_limit - 1) {
+FrontMatcher::FrontMatcher(std::uint32_t sources, std::int64_t tolerance,
+                           std::optional<std::uint32_t> queue_limit)
+    : tolerance_(tolerance), queue_limit_(queue_limit.value_or(kUnbounded)) {
   SIMBENCH_ASSERT(sources > 0, "gathering needs a source");
   SIMBENCH_ASSERT(tolerance > 0, "no set is narrower than an interval of 0");
-  SIMBENCH_ASSERT(queue_limit > 0, "a queue needs room for one frame");
+  SIMBENCH_ASSERT(queue_limit_ > 0, "a queue needs room for one frame");
   queues_.resize(sources);
   keys_.resize(sources);
   fronts_.resize(sources);
-  rings_.resize(std::size_t{sources} * ring_size_);
+  rings_.assign(sources, Ring(std::min(kFirstQueue, queue_limit_) - 1));
   heap_.reserve(sources);
 }
 
-void FrontMatcher::drop_oldest(std::uint32_t source) {
-  pop_front(source);
-  ++discarded_;
-  heap_.clear();  // its order and latest_ may no longer hold
+void FrontMatcher::make_room(std::uint32_t source) {
+  Queue& queue = queues_[source];
+  if (queue.length == queue_limit_) {
+    pop_front(source);
+    ++discarded_;
+    heap_.clear();  // its order and latest_ may no longer hold
+    return;
+  }
+  Ring& ring = rings_[source];
+  std::rotate(ring.begin(), ring.begin() + queue.head, ring.end());
+  queue.head = 0;
+  ring.resize(std::min<std::size_t>(2 * (ring.size() + 1), queue_limit_) - 1);
 }
 
 void FrontMatcher::pop_front(std::uint32_t source) {
@@ -48,11 +64,11 @@ void FrontMatcher::pop_front(std::uint32_t source) {
     --waiting_sources_;
     return;
   }
-  const Waiting& next = rings_[std::size_t{source} * ring_size_ + queue.head];
-  keys_[source] = next.key;
-  fronts_[source] = next.frame;
+  const Ring& ring = rings_[source];
+  keys_[source] = ring[queue.head].key;
+  fronts_[source] = ring[queue.head].frame;
   --behind_;
-  if (++queue.head == ring_size_) queue.head = 0;
+  if (++queue.head == ring.size()) queue.head = 0;
 }
 
 void FrontMatcher::match(FrameSetSink& sink) {

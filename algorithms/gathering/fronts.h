@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -99,13 +100,21 @@ class FrameQueues {
 //
 // Complexity: O(1) amortised per frame while all frames match, O(log n) per discarded frame: the
 // fronts lie side by side in order of source, and a heap over them is made only to discard one.
-// Memory: one slab of n * queue_limit frames, allocated when made; nothing per frame.
+//
+// Memory: room for kFirstQueue frames a source, or queue_limit if that is less, of 48 bytes each. A
+// queue that becomes longer than it ever was doubles; nothing else is allocated after construction.
+// Without a limit, frames wait as long as a source is silent, and no shorter queue gives the same
+// sets: the next stamp of that source may be as old as the oldest frame that waits. The capture is
+// the bound: if a source never delivers again, the others' frames wait until its end.
 //
 // Source: docs/reference/paper.md section 5.
 class FrontMatcher {
  public:
-  // All at least 1. `queue_limit` counts the front.
-  FrontMatcher(std::uint32_t sources, std::int64_t tolerance, std::uint32_t queue_limit);
+  static constexpr std::uint32_t kFirstQueue = 64;
+
+  // Those stated are at least 1. `queue_limit` counts the front; empty: any number may wait.
+  FrontMatcher(std::uint32_t sources, std::int64_t tolerance,
+               std::optional<std::uint32_t> queue_limit);
 
   // Adds the frame to its source's queue (dropping the oldest of a full one), then matches.
   void push(std::int64_t key, const GatherFrame& frame, FrameSetSink& sink) {
@@ -124,24 +133,27 @@ class FrontMatcher {
     std::uint32_t length = 0;  // with the front; 0: empty
     std::uint32_t head = 0;    // of the ring behind the front
   };
+  using Ring = std::vector<Waiting>;
 
   void enqueue(std::uint32_t source, std::int64_t key, const GatherFrame& frame) {
     Queue& queue = queues_[source];
-    if (queue.length == ring_size_ + 1) drop_oldest(source);
+    if (queue.length == rings_[source].size() + 1) make_room(source);
     if (queue.length == 0) {
       ++waiting_sources_;
       keys_[source] = key;
       fronts_[source] = frame;
       if (!heap_.empty()) heap_push(source);
     } else {
-      std::uint32_t tail = queue.head + queue.length - 1;
-      if (tail >= ring_size_) tail -= ring_size_;
-      rings_[std::size_t{source} * ring_size_ + tail] = {.key = key, .frame = frame};
+      Ring& ring = rings_[source];
+      std::size_t tail = std::size_t{queue.head} + queue.length - 1;
+      if (tail >= ring.size()) tail -= ring.size();
+      ring[tail] = {.key = key, .frame = frame};
       ++behind_;
     }
     ++queue.length;
   }
-  void drop_oldest(std::uint32_t source);
+  // Makes a full queue longer if the limit allows it, else drops its oldest frame.
+  void make_room(std::uint32_t source);
   void pop_front(std::uint32_t source);
   void match(FrameSetSink& sink);
   bool fronts_match();
@@ -152,14 +164,14 @@ class FrontMatcher {
   auto later() const;
 
   std::int64_t tolerance_;
-  std::uint32_t ring_size_;
+  std::uint32_t queue_limit_;
   std::uint32_t waiting_sources_ = 0;  // whose queues are not empty
   std::uint64_t behind_ = 0;           // frames that wait behind the fronts
   std::uint64_t discarded_ = 0;
   std::vector<Queue> queues_;
   std::vector<std::int64_t> keys_;   // of the fronts, by source
   std::vector<GatherFrame> fronts_;  // by source
-  std::vector<Waiting> rings_;       // behind the fronts: ring_size_ per source
+  std::vector<Ring> rings_;          // behind the fronts, by source
   // While a set is being searched: the sources that have a front, the earliest first. Else empty.
   std::vector<std::uint32_t> heap_;
   std::int64_t latest_ = 0;  // of the fronts, while a set is being searched

@@ -1,5 +1,9 @@
 // The gathering policies; gathering.h has their interface.
 //
+// Each has a queue per source, of GatheringSetup::queue_limit frames if that is stated. Else it is
+// as long as that of the program (docs/reference/gathering.md section 5): unbounded in the paper's
+// policies and the oracle, else the constants below.
+//
 //   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = from_ms(22)});
 //   gatherer->push(frame, set_sink);
 #pragma once
@@ -13,7 +17,12 @@
 
 namespace simbench {
 
-// Gathering by Algorithm 3 of the paper, as a streaming class with bounded queues.
+inline constexpr std::uint32_t kRosQueue = 10;           // per topic, of its tests
+inline constexpr std::uint32_t kK4aQueue = 16;           // 15, and the frame that is compared
+inline constexpr std::uint32_t kLibrealsenseQueue = 10;  // QUEUE_MAX_SIZE
+inline constexpr std::uint32_t kPhaseBinningSlots = 64;  // an assumption: no program is meant
+
+// Gathering by Algorithm 3 of the paper, as a streaming class.
 //
 // A queue of global stamps per source. While no queue is empty: if the fronts' range is less than
 // T_int (GatheringSetup::interval, which must be positive), they are a set and all are popped; else
@@ -65,10 +74,10 @@ std::unique_ptr<Gatherer> make_genlock_gatherer(const GatheringSetup& setup,
 //
 //   auto gatherer = make_approximate_time_gatherer(setup, {.lower_bound = setup.period / 2});
 struct ApproximateTimeOptions {
-  double age_penalty = 0.1;    // not negative
-  Nanoseconds lower_bound{};   // between two frames of a source; 0: none is known
-  Nanoseconds max_interval{};  // of a set, itself allowed; 0: any
-  std::uint32_t queue = 10;    // frames per source, if setup.queue_limit is not smaller
+  double age_penalty = 0.1;         // not negative
+  Nanoseconds lower_bound{};        // between two frames of a source; 0: none is known
+  Nanoseconds max_interval{};       // of a set, itself allowed; 0: any
+  std::uint32_t queue = kRosQueue;  // frames per source, if setup.queue_limit is empty
   // By source, in place of lower_bound; empty: lower_bound holds for all.
   std::vector<Nanoseconds> lower_bounds{};
 };
@@ -86,7 +95,7 @@ std::unique_ptr<Gatherer> make_approximate_time_gatherer(const GatheringSetup& s
 // epsilon of it, which sometimes costs a good set when stamps are noisy. Sets do not cross, each
 // frame is used at most once, there are no partial sets. A full queue drops its oldest frame.
 //
-// Complexity: O(log n) per discarded frame, O(n) per set. Memory: n * queue_limit frames.
+// Complexity: O(log n) per discarded frame, O(n) per set. Memory: a full queue per source.
 // Source: ros2/message_filters sync_policies/approximate_epsilon_time; docs/reference/gathering.md.
 std::unique_ptr<Gatherer> make_epsilon_gatherer(const GatheringSetup& setup);
 
@@ -110,7 +119,7 @@ std::unique_ptr<Gatherer> make_epsilon_gatherer(const GatheringSetup& setup);
 // each stream's own rate where this one has one period for all, and compares fronts in the order of
 // addresses in memory, which only matters from three sources on and here is by time.
 //
-// Complexity: O(1) per frame that waits, O(n) per set, partial or not. Memory: n * queue_limit.
+// Complexity: O(1) per frame that waits, O(n) per set, partial or not. Memory: a full queue each.
 // Uses GatheringSetup::period, not interval.
 // Source: librealsense src/sync.cpp (timestamp_composite_matcher); docs/reference/d455.md
 // section 6.
@@ -131,7 +140,7 @@ std::unique_ptr<Gatherer> make_librealsense_gatherer(const GatheringSetup& setup
 //
 // The original cuts its first windows at 0, as its stamps start near 0 and are unsigned; not here.
 //
-// Complexity: O(1) amortised per frame, O(n) per frame of the reference. Memory: n * queue_limit.
+// Complexity: O(1) amortised per frame, O(n) per frame of the reference. Memory: a full queue each.
 // Uses GatheringSetup::period, not interval.
 // Source: Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c; docs/reference/gathering.md.
 std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup,
@@ -149,11 +158,11 @@ std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup,
 // allowed and no frame is compared with another; but it needs a rig whose sources share one stable
 // phase, and sources whose constant offsets differ by half a period give mixed sets. It discards a
 // second frame of a source in a slot, slots older than the last set (sets do not cross while a
-// source's stamps increase), and frames for these. No partial sets. At most queue_limit slots are
-// open; a new one takes the place of an old one. Stamps that fall back by queue_limit periods or
-// more begin anew.
+// source's stamps increase), and frames for these. No partial sets. As many slots are open as the
+// queue has frames; a new one takes the place of an old one. Stamps that fall back by so many
+// periods or more begin anew.
 //
-// Complexity: O(1) per frame, O(n) per slot. Memory: n * queue_limit frames. Uses
+// Complexity: O(1) per frame, O(n) per slot. Memory: n frames for each slot. Uses
 // GatheringSetup::period (at least a microsecond), not interval. `decay` is in [0, 1).
 // Source: practice of genlock rigs; docs/reference/gathering.md.
 inline constexpr double kPhaseDecay = 0.98;
@@ -165,7 +174,7 @@ std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setu
 // GatherFrame::tag must be the true pulse, known in a simulation only (Need::kTruth); a frame of no
 // pulse (tag below 0) is discarded. A set is emitted as soon as every source has delivered its
 // frame of one pulse, and older, incomplete pulses are then discarded. No policy can gather better:
-// its recall is 1 unless a queue overflows.
+// its recall is 1 unless a limited queue overflows.
 //
 // Complexity and memory: gathering/fronts.h.
 std::unique_ptr<Gatherer> make_oracle_gatherer(const GatheringSetup& setup);

@@ -4,13 +4,16 @@
 // arrival and emits sets of frames exposed at the same instant, one frame per source. It never
 // reorders a source's frames and uses each at most once; it counts the frames that it discards.
 //
-// Memory is bounded: at most `queue_limit` frames wait per source, an overflow drops the oldest.
+// Where a scenario states /evaluation/gathering_queue_frames (`queue_limit`), at most so many
+// frames wait per source, and an overflow drops the oldest; else each policy has the queue of the
+// program that it models (gatherers.h).
 //
 //   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = ..., .interval = ...});
 //   gatherer->push({.source = 3, .stamp = stamp, .tag = frame_index}, set_sink);
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "algorithms/ports/time.h"
@@ -48,7 +51,8 @@ struct GatheringSetup {
   std::uint32_t sources = 0;
   Nanoseconds period{};    // nominal frame period
   Nanoseconds interval{};  // T_int, largest range of a set
-  std::uint32_t queue_limit = 64;
+  // Frames that may wait per source, at least 1; empty: the policy's own.
+  std::optional<std::uint32_t> queue_limit{};
 };
 
 class Gatherer {

@@ -17,8 +17,8 @@ class K4aGatherer final : public Gatherer {
   K4aGatherer(const GatheringSetup& setup, Nanoseconds delay)
       : period_(setup.period.count()),
         begin_(delay.count() - period_ / 4),
-        limit_(setup.queue_limit),
-        queues_(setup.sources, setup.queue_limit) {
+        limit_(setup.queue_limit.value_or(kK4aQueue)),
+        queues_(setup.sources, limit_) {
     SIMBENCH_ASSERT(period_ > 0, "the frame period must be positive");
   }
 

@@ -18,8 +18,8 @@ class LibrealsenseGatherer final : public Gatherer {
  public:
   explicit LibrealsenseGatherer(const GatheringSetup& setup)
       : gap_(setup.period.count()),
-        limit_(setup.queue_limit),
-        queues_(setup.sources, setup.queue_limit),
+        limit_(setup.queue_limit.value_or(kLibrealsenseQueue)),
+        queues_(setup.sources, limit_),
         expected_(setup.sources, kNeverSeen) {
     SIMBENCH_ASSERT(gap_ > 0, "the frame period must be positive");
     group_.reserve(setup.sources);

@@ -80,11 +80,11 @@ class PhaseBinningGatherer final : public BlockGatherer<PhaseBinningGatherer> {
   PhaseBinningGatherer(const GatheringSetup& setup, double decay)
       : grid_(setup.period.count(), decay),
         sources_(setup.sources),
-        places_(setup.queue_limit),
-        frames_(std::size_t{setup.sources} * setup.queue_limit),
+        places_(setup.queue_limit.value_or(kPhaseBinningSlots)),
+        frames_(std::size_t{setup.sources} * places_.size()),
         is_filled_(frames_.size()) {
     SIMBENCH_ASSERT(setup.sources > 0, "gathering needs a source");
-    SIMBENCH_ASSERT(setup.queue_limit > 0, "gathering needs room for one slot");
+    SIMBENCH_ASSERT(!places_.empty(), "gathering needs room for one slot");
     SIMBENCH_ASSERT(setup.period >= Microseconds(1), "a frame period is a microsecond or more");
     SIMBENCH_ASSERT(decay >= 0 && decay < 1, "a frame weighs less than its successor");
   }

@@ -1,5 +1,5 @@
-// What a host synchronisation reports: its exchanges, and how each slave's session ended; and what
-// a capture alignment does.
+// What a host synchronisation reports: its exchanges, the delays that a slave measured and added,
+// and how each slave's session ended; and what a capture alignment does.
 //
 // A recording holds the exchanges (Host::report_exchange), so that other estimators can be run on
 // them afterwards. Stamps that an algorithm does not have are absent.
@@ -24,6 +24,20 @@ struct Exchange {
   std::optional<HostTime> t2;
   std::optional<HostTime> t3;
   std::optional<HostTime> t4;
+};
+
+// What a slave measured in one pass of a session of Algorithms 1 and 2 (host_sync/yoon2021/), and
+// what it added to the master's time. The last pass of a session is the one that counts.
+struct SessionDelays {
+  PeerId slave = 0;
+  std::uint32_t pass = 0;  // of the loop of T_th, from 1
+  SteadyTime begin{};      // the slave, which measures on its steady clock, has READY
+  SteadyTime end{};        // it has set its clock to T_m + t_d
+  Nanoseconds t_l{0};      // network synchronisation delay
+  Nanoseconds t_t{0};      // time synchronisation delay: half of a get and a set
+  Nanoseconds t_d{0};      // what it added
+  Nanoseconds get{0};      // mean duration of a call that reads the system clock
+  Nanoseconds set{0};      // and of one that sets it
 };
 
 // How the synchronisation of one slave ended.

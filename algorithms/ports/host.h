@@ -201,6 +201,9 @@ class Host {
   // Reports an exchange, or how the synchronisation of a host ended, to the recording.
   virtual void report_exchange(const Exchange& exchange) = 0;
   virtual void report_outcome(const SyncOutcome& outcome) = 0;
+  // Reports what a slave measured in a pass of its session; a host without a recording has no use
+  // for it.
+  virtual void report_delays(const SessionDelays& /*delays*/) {}
   // Reports what a capture alignment thinks it has reached; a host without cameras that can be
   // steered has nothing to report.
   virtual void report_alignment(const AlignmentReport& /*report*/) {}

@@ -20,6 +20,9 @@ void add_clocks_command(CommandLine& line);
 // simbench-reconstruct if this program lacks the libraries.
 void add_reconstruct_command(CommandLine& line);
 
+// Everything that the paper measured, beside what is printed.
+void add_paper_command(CommandLine& line);
+
 // Which rigs of real parts meet a requirement, the cheapest first.
 void add_advise_command(CommandLine& line);
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -37,8 +39,12 @@ constexpr const char* kFigureExamples = R"(
 Draws figures of finished results, and of single runs, which it repeats in the simulator. gnuplot
 (Debian: gnuplot-nox) draws SVG and PDF; CSV has the data, a line for each point: panel,series,x,y.
 
+Without ARCHIVE and --scenario a figure is drawn of the built-in scenario that has what the paper's
+figure shows, and of the paper's pipeline.
+
 Examples:
   simbench figure --list
+  simbench figure fig5 -o fig5.svg
   simbench figure fig8 --scenario 18cam_6host_45fps -o fig8.pdf
   simbench figure host_clocks --scenario 18cam_6host_45fps --seed 7 --pipelines ntp_w32time -o h.svg
   simbench figure distributions results/monday -o distributions.csv
@@ -78,6 +84,16 @@ const char* drawn_for(FigureScope scope) {
   return "a pipeline and seed";
 }
 
+// What is drawn where neither a scenario nor an archive is named.
+std::string default_of(const FigureEntry& entry) {
+  if (entry.rates.empty()) return entry.scenario;
+  std::vector<std::string> of_rates;
+  for (const reports::PaperRate& each : entry.rates) {
+    of_rates.push_back(fmt::format("{} ({})", each.scenario, each.alias));
+  }
+  return fmt::format("{}", fmt::join(of_rates, ", "));
+}
+
 }  // namespace
 
 std::string figure_list() {
@@ -85,11 +101,14 @@ std::string figure_list() {
   reports::Table table({{"figure", Align::kLeft},
                         {"of the paper", Align::kLeft},
                         {"drawn for", Align::kLeft},
+                        {"by itself of", Align::kLeft},
                         {"what it shows", Align::kLeft}});
   for (const FigureEntry& entry : reports::figure_catalogue()) {
-    table.add({entry.id, entry.paper, drawn_for(entry.scope), entry.title});
+    table.add({entry.id, entry.paper, drawn_for(entry.scope), default_of(entry), entry.title});
   }
-  return plain(table) + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
+  return plain(table) +
+         "\nThe paper's numbers are names too: fig2, fig3, ..., fig13. Figures 1, 6 and 7a are\n"
+         "pictures: `simbench figure fig1` says where the project has what they show.\n";
 }
 
 namespace {
@@ -122,6 +141,7 @@ std::vector<std::string> chosen_pipelines(const FigureCommand& command, const Fi
                     command.pipelines.size(), entry.id));
   }
   if (!command.pipelines.empty() || known.empty()) return command.pipelines;
+  if (std::ranges::count(known, entry.pipeline) > 0) return {entry.pipeline};
   return {usual_pipeline(known)};
 }
 
@@ -131,7 +151,8 @@ app::FigureOptions options_of(const FigureCommand& command, const FigureEntry& e
   if (command.seed) options.seeds = {*command.seed};
   options.pipelines = chosen_pipelines(command, entry, known);
   options.budget_seeds = command.seeds;
-  options.figures = {entry.id};
+  options.figures = {command.name};
+  options.all_sync_modes = command.pipelines.empty();
   return options;
 }
 
@@ -146,9 +167,11 @@ void announce_budget(const FigureEntry& entry, const app::FigureOptions& options
 
 std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command,
                                                     const FigureEntry& entry) {
+  const std::string name = command.scenario.empty()
+                               ? reports::scenario_of_figure(entry, command.name)
+                               : command.scenario;
   const scenarios::Scenario scenario = scenarios::load_scenario(
-      command.scenario, evaluation::with_ad_hoc_pipelines(
-                            command.scenario, overrides_of(command.sets), command.pipelines));
+      name, evaluation::with_ad_hoc_pipelines(name, overrides_of(command.sets), command.pipelines));
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
   const std::vector<std::string> known = collected(scenario.pipelines, &scenarios::Pipeline::name);
@@ -218,6 +241,17 @@ const Figure& meant(const FigureCommand& command, const app::ArchiveFigures& mad
                                made.notes.empty() ? "there is no run" : made.notes.front()));
 }
 
+// A number of the paper stands for all of its figure, which a recording must then have.
+void check_is_whole(const FigureCommand& command, const Figure& figure) {
+  for (const reports::FigureLack& lack : figure.lacks) {
+    if (lack.was_recorded) continue;
+    throw InputError(fmt::format(
+        "{}: found no {} in {}, allowed: a recording that has them, as `simbench record "
+        "--scenario {} -o DIR` makes it; {} draws what there is",
+        command.name, lack.what, command.inputs.front(), lack.scenario, figure.id));
+  }
+}
+
 int draw_figure(const FigureCommand& command) {
   if (command.list) {
     print_result(figure_list());
@@ -233,6 +267,7 @@ int draw_figure(const FigureCommand& command) {
   if (!figure.absent.empty()) {
     throw InputError(fmt::format("{}: cannot be drawn: {}", command.name, figure.absent));
   }
+  if (!command.inputs.empty() && command.name != entry.id) check_is_whole(command, figure);
   if (kind == FileKind::kCsv) {
     file.write(reports::figure_csv(figure));
     file.publish();
@@ -241,7 +276,8 @@ int draw_figure(const FigureCommand& command) {
                   kind == FileKind::kSvg ? reports::PlotFormat::kSvg : reports::PlotFormat::kPdf,
                   command.output);
   }
-  print_note(fmt::format("{} written. {}", command.output, figure.caption));
+  print_note(fmt::format("{} written: {}. {}", command.output,
+                         fmt::join(reports::source_lines(figure.source), "; "), figure.caption));
   return kOk;
 }
 
@@ -251,14 +287,18 @@ void check(const FigureCommand& command) {
   if (command.name.empty()) {
     refuse("FIGURE", "is missing; `simbench figure --list` names the figures");
   }
-  if (command.inputs.empty() == command.scenario.empty()) {
-    refuse("ARCHIVE, --scenario", "one of them is needed, and not both");
+  if (!command.inputs.empty() && !command.scenario.empty()) {
+    refuse("ARCHIVE, --scenario", "one of them is allowed, and not both");
+  }
+  const FigureEntry& entry = reports::figure_named(command.name);
+  if (command.inputs.empty() && command.scenario.empty() && entry.scenario.empty()) {
+    refuse("ARCHIVE", fmt::format("is missing: {} is of a recording, as `simbench record` makes it",
+                                  entry.id));
   }
   if (!command.inputs.empty() && !command.sets.empty()) {
-    refuse("--set", "allowed only with --scenario: an archive has its own parameters");
+    refuse("--set", "allowed only for a scenario: an archive has its own parameters");
   }
-  if (!command.scenario.empty() &&
-      reports::figure_named(command.name).scope == FigureScope::kRecording) {
+  if (!command.scenario.empty() && entry.scope == FigureScope::kRecording) {
     refuse("--scenario", fmt::format("allowed only for figures of simulated runs; {} is of a "
                                      "recording: `simbench record` makes one",
                                      command.name));
@@ -282,15 +322,16 @@ void add_figure_command(CommandLine& line) {
   add_input_options(command, options->reading);
   command.flag("--list", options->list, "List the figures");
   command.text("--scenario", "SCENARIO", options->scenario,
-               "Instead of ARCHIVE: name of a scenario or path of a scenario file");
+               "Instead of ARCHIVE: name of a scenario or path of a scenario file. Default: the\n"
+               "one that has what the paper's figure shows (--list)");
   command.sets(options->sets);
   command.seed("--seed", options->seed,
                "The seed of a figure of one seed. Default: the archive's first; 1 for a scenario");
   command.count("--seeds", options->seeds,
                 "How many seeds, for figures over a scenario's seeds and for budgets. Default: 32");
   command.list("--pipelines", "PIPELINE,...", options->pipelines,
-               "Only these. Default: all; for a figure of one pipeline yoon2021_both, else the\n"
-               "first");
+               "Only these. Default: all; for a figure of one pipeline the paper's, else\n"
+               "yoon2021_both, else the first");
   command.text("-o,--output", "FILE", options->output,
                "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
   command.json_messages();

@@ -157,6 +157,7 @@ class ClockEvaluation {
     results.clock_period = {.from_s = options_.from_s, .duration_s = options_.duration_s};
     results.scenario = scenario_.name;
     results.derivation = scenario_.derivation;
+    results.draws_load = scenario_.draws_load();
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.warnings = chosen_.left_out;

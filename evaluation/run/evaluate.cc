@@ -102,6 +102,7 @@ class EvaluationRun {
     Results results;
     results.scenario = scenario_.name;
     results.derivation = scenario_.derivation;
+    results.draws_load = scenario_.draws_load();
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.asymmetry_floor =

@@ -365,6 +365,12 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   setup.is_steered = choice.is_steered() || scenario.cameras.frame_control.has_value();
   setup.unsteady_start = from_ms(scenario.cameras.unstable_start_ms);
   setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
+  if (const auto frames = scenario.evaluation.gathering_queue_frames) {
+    setup.gathering_queue_frames = static_cast<std::uint32_t>(*frames);
+  }
+  if (const scenarios::Stream* scored = scenario.scored_stream()) {
+    setup.pulses_per_frame = scenario.pulses_per_frame(*scored);
+  }
   setup.make_gatherer = [chosen = choice.gathering](const GatheringSetup& gathering) {
     return chosen.make(gathering);
   };

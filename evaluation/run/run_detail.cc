@@ -106,18 +106,25 @@ class RunWorld final : public WorldObserver {
   std::vector<ClockErrors> clocks_;
 };
 
+// A camera's register and what it counts, unwrapped.
+struct ReadRegister {
+  DeviceStamp stamp;
+  DeviceTime time;
+};
+
 // The estimators of one camera besides the pipeline's own, and their input.
 struct Companion {
   std::unique_ptr<DeviceTimeEstimator> from_start;  // null: the oracle
   DeviceStampUnwrapper unwrapper;
+  std::optional<ReadRegister> newest;             // the sensor stamp of the newest frame
   std::vector<DeviceSample> samples;              // by frame
   std::vector<std::optional<GlobalTime>> global;  // by frame, as the pipeline's estimator gave it
   std::map<DeviceTime, std::size_t> frame_by_sensor;  // scorer and gatherer identify frames so
 };
 
-// The frame stamp, unwrapped with the sensor stamp, from which it is never far.
-DeviceTime frame_stamp(const FrameRecord& frame, DeviceTime sensor) {
-  return sensor + Microseconds(static_cast<std::int32_t>(frame.frame.us - frame.sensor.us));
+// The unwrapped time of a stamp of the same register, from which it is never far.
+DeviceTime time_near(DeviceStamp stamp, const ReadRegister& known) {
+  return known.time + Microseconds(static_cast<std::int32_t>(stamp.us - known.stamp.us));
 }
 
 double device_ms(DeviceTime time) { return to_ms(time.time_since_epoch()); }
@@ -147,7 +154,8 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
 
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
     for_each_frame(frames, truths, [this](const FrameRecord& frame, const FrameTruth* truth) {
-      if (frame.stream == setup_.stream && frame.camera < companions_.size()) keep(frame, truth);
+      if (frame.camera >= companions_.size()) return;
+      frame.stream == setup_.stream ? keep(frame, truth) : keep_other(frame, truth);
     });
     sink().on_frames(frames, truths);
   }
@@ -260,17 +268,19 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     }
     Companion& companion = companions_[frame.camera];
     const DeviceTime sensor = companion.unwrapper.unwrap(frame.sensor);
+    companion.newest = {frame.sensor, sensor};
     FrameDetail detail;
     detail.counter = frame.counter;
     detail.in_warm_up = true;  // until it gets a stamp
     detail.sensor_ms = device_ms(sensor);
-    detail.frame_ms = device_ms(frame_stamp(frame, sensor));
+    detail.frame_ms = device_ms(time_near(frame.frame, *companion.newest));
     detail.backend_ms = from_zero_ms(frame.backend);
     detail.arrival_ms = from_zero_ms(frame.arrival);
     if (truth != nullptr) {
       run_.has_truth = true;
       detail.pulse = truth->pulse;
       detail.reference_ms = from_zero_ms(truth->reference);
+      detail.own_host_ms = from_zero_ms(truth->own_host);
       detail.exposure_start_ms = true_ms(truth->exposure_start);
       detail.exposure_end_ms = true_ms(truth->exposure_end);
     }
@@ -285,6 +295,19 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     companion.samples.push_back(sample);
     companion.global.emplace_back();
     frames.push_back(detail);
+  }
+
+  // Frames before the camera's first of the scored stream are left out.
+  void keep_other(const FrameRecord& frame, const FrameTruth* truth) {
+    const std::optional<ReadRegister>& newest = companions_[frame.camera].newest;
+    if (!newest) return;
+    OtherFrame other;
+    other.sensor_ms = device_ms(time_near(frame.sensor, *newest));
+    if (truth != nullptr) {
+      other.exposure_start_ms = true_ms(truth->exposure_start);
+      other.exposure_end_ms = true_ms(truth->exposure_end);
+    }
+    run_.cameras[frame.camera].others.push_back(other);
   }
 
   std::optional<std::size_t> frame_index(std::uint32_t camera, DeviceTime sensor) const {
@@ -344,6 +367,8 @@ RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& 
   run.scenario = scenario.name;
   run.pipeline = choice.pipeline.name;
   run.seed = seed;
+  run.stream = scenario.evaluation.stream;
+  run.sync_mode = scenario.cameras.sync_mode;
   const ScorerSetup setup = scorer_setup(scenario, choice);
   PipelineScorer scorer(setup);
   DetailKeeper keeper(scorer, setup, run);

@@ -27,6 +27,7 @@
 #include "evaluation/scoring/results.h"
 #include "recording/recording.h"
 #include "recording/world_observer.h"
+#include "scenarios/choices.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
@@ -50,15 +51,24 @@ struct FrameDetail {
   double online_ms = kNan;          // by regression_30, from zero; none in the warm-up
   double offline_ms = kNan;         // by regression_offline, from zero; none in the warm-up
   double reference_ms = kNan;       // master's clock at mid-exposure, from zero: the truth
+  double own_host_ms = kNan;        // own host's clock at mid-exposure, from zero: the truth
   double exposure_start_ms = kNan;  // true time
   double exposure_end_ms = kNan;    // true time
 
   double mid_exposure_ms() const { return (exposure_start_ms + exposure_end_ms) / 2; }
 };
 
+// A frame of the stream that is not scored, such as colour beside depth.
+struct OtherFrame {
+  double sensor_ms = 0;             // device clock, unwrapped: the one of FrameDetail::sensor_ms
+  double exposure_start_ms = kNan;  // true time
+  double exposure_end_ms = kNan;    // true time
+};
+
 struct CameraDetail {
   std::uint32_t host = 0;
   std::vector<FrameDetail> frames;  // of the scored stream, in order of delivery
+  std::vector<OtherFrame> others;   // of the other stream, likewise
 };
 
 // A frame that was taken and never arrived: observed in a simulated world, else derived from gaps
@@ -94,6 +104,8 @@ struct RunDetail {
   std::string scenario;
   std::string pipeline;
   std::uint64_t seed = 0;
+  StreamKind stream = StreamKind::kDepth;  // the scored one
+  scenarios::SyncMode sync_mode = scenarios::SyncMode::kGenlock;
   double frame_rate_hz = 0;
   std::size_t camera_count = 0;  // of the rig; `cameras` has the first of them
   std::size_t host_count = 0;

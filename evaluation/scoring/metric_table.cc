@@ -72,6 +72,33 @@ constexpr Metric alignment_metric(const char* id, const char* title, const char*
   return metric;
 }
 
+// To look at: in results.json, tidy CSV, sweep.csv and /published_figures, not in tables.
+constexpr Metric unshown(const char* id, const char* title, const char* unit, SeriesPlace kept) {
+  Metric metric;
+  metric.id = id;
+  metric.title = title;
+  metric.unit = unit;
+  metric.better = Better::kNeither;
+  metric.place = kept;
+  metric.sweep = id;
+  metric.is_new = true;
+  return metric;
+}
+
+// Rows whose host synchronisation has sessions with delays have values of these.
+constexpr Metric session_metric(const char* id, const char* title, const char* unit,
+                                SeriesPlace kept) {
+  Metric metric;
+  metric.id = id;
+  metric.title = title;
+  metric.unit = unit;
+  metric.better = Better::kNeither;
+  metric.place = kept;
+  metric.csv = CsvForm::kValueAtEnd;
+  metric.is_new = true;
+  return metric;
+}
+
 constexpr Metric kCaptureMetrics[] = {
     {.id = "amd_ms",
      .title = "AMD",
@@ -294,6 +321,26 @@ constexpr Metric kCaptureMetrics[] = {
         {&MetricValues<double>::exposure_drift_ppm, &MetricValues<Series>::exposure_drift_ppm}),
     alignment_metric("wrong_locks", "wrong locks", "",
                      {&MetricValues<double>::wrong_locks, &MetricValues<Series>::wrong_locks}),
+    unshown(
+        "rmdv_printed_sqrt_ms", "RMDV as printed", "sqrt(ms)",
+        {&MetricValues<double>::rmdv_printed_sqrt_ms, &MetricValues<Series>::rmdv_printed_sqrt_ms}),
+    unshown("rmdv_printed_share", "pulses with an RMDV as printed", "share",
+            {&MetricValues<double>::rmdv_printed_share, &MetricValues<Series>::rmdv_printed_share}),
+    session_metric("t_l_ms", "network synchronisation delay", "ms",
+                   {&MetricValues<double>::t_l_ms, &MetricValues<Series>::t_l_ms}),
+    session_metric("t_t_ms", "time synchronisation delay", "ms",
+                   {&MetricValues<double>::t_t_ms, &MetricValues<Series>::t_t_ms}),
+    session_metric("t_d_ms", "added delay", "ms",
+                   {&MetricValues<double>::t_d_ms, &MetricValues<Series>::t_d_ms}),
+    session_metric("session_passes", "passes of a session", "",
+                   {&MetricValues<double>::session_passes, &MetricValues<Series>::session_passes}),
+    session_metric("get_time_ms", "duration of a get of the clock", "ms",
+                   {&MetricValues<double>::get_time_ms, &MetricValues<Series>::get_time_ms}),
+    session_metric("set_time_ms", "duration of a set of the clock", "ms",
+                   {&MetricValues<double>::set_time_ms, &MetricValues<Series>::set_time_ms}),
+    session_metric(
+        "message_time_ms", "duration of a message", "ms",
+        {&MetricValues<double>::message_time_ms, &MetricValues<Series>::message_time_ms}),
 };
 
 constexpr Metric kClockMetrics[] = {

@@ -49,6 +49,9 @@ template <class Value>
 struct MetricValues {
   Value amd_ms = no_value<Value>();
   Value rmdv_ms = no_value<Value>();
+  // Eq. (4) as printed, without the square (pulse_spread.h): no table shows these.
+  Value rmdv_printed_sqrt_ms = no_value<Value>();
+  Value rmdv_printed_share = no_value<Value>();  // of pulses: with a real root
   Value absolute_error_ms = no_value<Value>();
   Value bias_ms = no_value<Value>();
   Value host_error_ms = no_value<Value>();
@@ -77,6 +80,14 @@ struct MetricValues {
   Value disturbed_frames = no_value<Value>();    // a camera
   Value exposure_drift_ppm = no_value<Value>();  // of the worst camera
   Value wrong_locks = no_value<Value>();         // cameras
+  // Only rows of Algorithms 1 and 2 have these (session_scores.h): means over the slaves.
+  Value t_l_ms = no_value<Value>();           // network synchronisation delay, as measured
+  Value t_t_ms = no_value<Value>();           // time synchronisation delay, as measured
+  Value t_d_ms = no_value<Value>();           // what the slaves added of them
+  Value session_passes = no_value<Value>();   // of the loop of T_th
+  Value get_time_ms = no_value<Value>();      // a call that reads the slave's clock
+  Value set_time_ms = no_value<Value>();      // a call that sets it
+  Value message_time_ms = no_value<Value>();  // sending and receiving a message
   // Only clock runs have these (evaluation/clock_run/clock_score.h).
   Value clock_spread_ms = no_value<Value>();  // mean in time: largest minus smallest clock
   Value clock_spread_median_ms = no_value<Value>();
@@ -105,7 +116,9 @@ struct PooledValues {
 };
 
 struct FrameCounts {
-  std::int64_t expected = 0;  // evaluated pulses x sources; unverified: by the cameras' counters
+  // The evaluated pulses of each source, or what it exposes of them where its mode is too slow for
+  // all (PulseScoring::pulses_per_frame); unverified: by the cameras' counters.
+  std::int64_t expected = 0;
   std::int64_t delivered = 0;
   std::int64_t dropped = 0;
 };
@@ -166,7 +179,7 @@ using Place = std::variant<SeriesPlace, double PooledValues::*, std::int64_t Set
 struct Metric {
   const char* id = "";     // its name in JSON and CSV, with the unit last
   const char* title = "";  // in a sentence
-  const char* unit = "";   // "ms", "s", "1/s", "ppm", "share", or "" of a count
+  const char* unit = "";   // "ms", "sqrt(ms)", "s", "1/s", "ppm", "share", or "" of a count
   Better better = Better::kLower;
   Needs needs = Needs::kNothing;
   Place place;

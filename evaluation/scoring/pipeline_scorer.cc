@@ -13,6 +13,7 @@
 #include "evaluation/scoring/kept_frames.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/score_parts.h"
+#include "evaluation/scoring/session_scores.h"
 #include "evaluation/scoring/stamping.h"
 
 namespace simbench::evaluation {
@@ -40,8 +41,9 @@ GatheringSetup gathering_of(const ScorerSetup& setup, const RigLayout& layout) {
   const Nanoseconds period = period_of(layout);
   return {.sources = static_cast<std::uint32_t>(layout.cameras.size()),
           .period = period,
-          .interval = Nanoseconds(std::llround(static_cast<double>(period.count()) *
-                                               setup.gathering_interval_periods))};
+          .interval = Nanoseconds(
+              std::llround(static_cast<double>(period.count()) * setup.gathering_interval_periods)),
+          .queue_limit = setup.gathering_queue_frames};
 }
 
 // Returns how many frames a camera may deliver after the warm-up: a capture goes on a while after
@@ -87,6 +89,7 @@ class PipelineScorer::Capture {
   HostErrors host_errors_;
   bool pulses_have_truth_ = false;
   std::vector<SyncOutcome> failures_;
+  SessionScores sessions_;
   std::vector<std::unique_ptr<ScorePart>> parts_;
 };
 
@@ -99,7 +102,8 @@ PipelineScorer::Capture::Capture(const ScorerSetup& setup, const RigLayout& layo
       stamping_(layout, setup.make_estimator),
       table_(layout.first_pulse, layout.pulses, layout.cameras.size()),
       uses_warm_up_(stamping_.stamps_warm_up() || gatherer_->from_first_frame()),
-      host_errors_(layout.hosts) {
+      host_errors_(layout.hosts),
+      sessions_(layout.hosts) {
   const bool has_second = setup.make_second_estimator && !layout.cameras.empty();
   if (stamping_.is_offline() || has_second) {
     kept_.emplace(layout.cameras.size(), expected_frames(layout));
@@ -212,6 +216,7 @@ void PipelineScorer::Capture::add(const RecordingEvent& event) {
   } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
     if (!outcome->synchronised) failures_.push_back(*outcome);
   } else {
+    sessions_.add(event);
     stamping_.on_event(event);
   }
   for (const auto& part : parts_) part->on_event(event);
@@ -244,6 +249,7 @@ SeedScore PipelineScorer::Capture::finish() {
   PulseScoring scoring;
   scoring.median = setup_.median;
   scoring.period = period_of(layout_);
+  scoring.pulses_per_frame = setup_.pulses_per_frame;
   scoring.hosts = layout_.hosts;
   for (const CameraLayout& camera : layout_.cameras) scoring.host_of_source.push_back(camera.host);
   score_pulses(table_, scoring, score);
@@ -256,6 +262,7 @@ SeedScore PipelineScorer::Capture::finish() {
   score.host_errors_ms = host_errors_.signed_means_ms();
   for (const auto& part : parts_) part->add_to(score);
   score.failures = std::move(failures_);
+  sessions_.add_to(score);
   return score;
 }
 

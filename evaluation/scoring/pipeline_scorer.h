@@ -28,8 +28,10 @@
 //   SeedScore score = scorer.finish();
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "algorithms/device_time/estimator_bank.h"
@@ -46,10 +48,12 @@ using GathererFactory = std::function<std::unique_ptr<Gatherer>(const GatheringS
 struct ScorerSetup {
   StreamKind stream = StreamKind::kDepth;  // the scored one
   MedianKind median = MedianKind::kUpperMiddle;
-  bool genlock = false;                     // sensor stamps give the order of frames
-  double gathering_interval_periods = 0.5;  // T_int
-  EstimatorFactory make_estimator;          // empty: the oracle, the true time on the own host
-  EstimatorFactory make_second_estimator;   // for SeedScore::offline_amd_ms; empty: none
+  bool genlock = false;                                   // sensor stamps give the order of frames
+  double gathering_interval_periods = 0.5;                // T_int
+  std::optional<std::uint32_t> gathering_queue_frames{};  // empty: the policy's own
+  std::int64_t pulses_per_frame = 1;       // a camera exposes at one of so many pulses
+  EstimatorFactory make_estimator;         // empty: the oracle, the true time on the own host
+  EstimatorFactory make_second_estimator;  // for SeedScore::offline_amd_ms; empty: none
   GathererFactory make_gatherer;
   bool gatherer_needs_pulses = false;  // the oracle of gathering
   bool is_steered = false;             // there may be controls of frames: alignment is scored

@@ -18,6 +18,8 @@ FigureVerdict verdict_of_value(const Percentile& percentile) {
   return FigureVerdict::kTooFewSeeds;
 }
 
+}  // namespace
+
 FigureVerdict verdict_of_bound(const Percentile& kept) {
   constexpr double kFew = 5;
   constexpr double kNearlyAll = 95;
@@ -26,8 +28,6 @@ FigureVerdict verdict_of_bound(const Percentile& kept) {
   if (kept.low >= kFew && kept.high < kNearlyAll) return FigureVerdict::kInside;
   return FigureVerdict::kTooFewSeeds;
 }
-
-}  // namespace
 
 std::string_view verdict_word(FigureVerdict verdict) {
   switch (verdict) {

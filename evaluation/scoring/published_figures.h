@@ -37,6 +37,9 @@ enum class FigureVerdict : std::uint8_t {
 // "inside", "outside", "holds", "fails"; "" if the seeds are too few to tell.
 std::string_view verdict_word(FigureVerdict verdict);
 
+// The verdict on a bound by the seeds that keep it, or on a claim by those in which it holds.
+FigureVerdict verdict_of_bound(const Percentile& kept);
+
 struct FigureComparison {
   scenarios::PublishedFigure figure;
   Percentile percentile;  // of the published number among the seeds

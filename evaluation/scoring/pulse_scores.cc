@@ -107,8 +107,33 @@ void score_errors(const PulseTable& table, SeedScore& score) {
   score.exposure_spread_ms = exposure.value();
 }
 
-void count_frames(const PulseTable& table, FrameCounts& frames) {
-  frames.expected = static_cast<std::int64_t>(table.rows() * table.sources());
+// The exposures of a source that answers one of `pulses_per_frame` pulses: those delivered, and as
+// many as fit between them, before the first and after the last.
+std::int64_t exposures_of(const PulseTable& table, std::size_t source,
+                          std::int64_t pulses_per_frame) {
+  const auto rows = static_cast<std::int64_t>(table.rows());
+  std::int64_t exposures = 0;
+  std::int64_t last = -1;
+  for (std::int64_t row = 0; row < rows; ++row) {
+    if (!table.has(static_cast<std::size_t>(row), source)) continue;
+    exposures += last < 0 ? row / pulses_per_frame + 1
+                          : std::max<std::int64_t>(1, (row - last) / pulses_per_frame);
+    last = row;
+  }
+  return last < 0 ? rows / pulses_per_frame : exposures + (rows - 1 - last) / pulses_per_frame;
+}
+
+std::int64_t exposures_due(const PulseTable& table, std::int64_t pulses_per_frame) {
+  if (pulses_per_frame == 1) return static_cast<std::int64_t>(table.rows() * table.sources());
+  std::int64_t expected = 0;
+  for (std::size_t source = 0; source < table.sources(); ++source) {
+    expected += exposures_of(table, source, pulses_per_frame);
+  }
+  return expected;
+}
+
+void count_frames(const PulseTable& table, std::int64_t pulses_per_frame, FrameCounts& frames) {
+  frames.expected = exposures_due(table, pulses_per_frame);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     frames.delivered += static_cast<std::int64_t>(table.delivered(row));
   }
@@ -156,12 +181,13 @@ std::vector<double> HostErrors::signed_means_ms() const {
 }
 
 void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score) {
-  count_frames(table, score.frames);
+  count_frames(table, scoring.pulses_per_frame, score.frames);
   score_errors(table, score);
 
   HostSpreads hosts(scoring);
   Mean amd;
   Mean rmdv;
+  PrintedRmdv printed;
   Mean below_half_period;
   std::vector<std::int64_t> workspace;
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -173,6 +199,7 @@ void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScor
     pulse.deviation_ms = deviation_ms(stamps, scoring.median, workspace);
     amd.add(pulse.spread_ms);
     rmdv.add(pulse.deviation_ms);
+    printed.add(mean_difference_ms(stamps, scoring.median, workspace));
     below_half_period.add(pulse.spread_ms < to_ms(scoring.period) / 2 ? 1 : 0);
     hosts.add_pulse(stamps);
   }
@@ -180,6 +207,8 @@ void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScor
   if (table.sources() < 2) return;
   score.amd_ms = amd.value();
   score.rmdv_ms = rmdv.value();
+  score.rmdv_printed_sqrt_ms = printed.mean_sqrt_ms();
+  score.rmdv_printed_share = printed.real_share();
   score.share_below_half_period = below_half_period.value();
   score.spread_in_host_ms = hosts.inside_ms();
   score.spread_between_hosts_ms = hosts.between_ms();

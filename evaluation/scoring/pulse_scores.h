@@ -73,6 +73,9 @@ class PulseTable {
   std::size_t row_of(std::int64_t pulse) const {
     return static_cast<std::size_t>(pulse) - static_cast<std::size_t>(first_pulse_);
   }
+  bool has(std::size_t row, std::size_t source) const {
+    return global_ns_[row * sources_ + source] != kNothing;
+  }
   bool complete(std::size_t row) const { return rows_[row].delivered == sources_; }
   std::size_t delivered(std::size_t row) const { return rows_[row].delivered; }
   bool has_truth() const { return has_truth_; }
@@ -140,12 +143,15 @@ class HostErrors {
 struct PulseScoring {
   MedianKind median = MedianKind::kUpperMiddle;
   Nanoseconds period{};  // of the pulses
+  // Each source exposes at one of so many pulses: the others are no lost frames.
+  std::int64_t pulses_per_frame = 1;
   std::uint32_t hosts = 0;
   std::vector<std::uint32_t> host_of_source;  // by column of the table
 };
 
-// Sets amd_ms, rmdv_ms, absolute_error_ms, bias_ms, exposure_spread_ms, the two spreads by host,
-// trend_ms, share_below_half_period, frames, sets.complete_pulses and pulses. O(pulses x sources).
+// Sets amd_ms, rmdv_ms, that as printed, absolute_error_ms, bias_ms, exposure_spread_ms, the two
+// spreads by host, trend_ms, share_below_half_period, frames, sets.complete_pulses and pulses.
+// O(pulses x sources).
 void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score);
 
 // AMD alone, of stamps that come source by source: no table, but the range of each pulse.

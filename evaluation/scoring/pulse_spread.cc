@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluation/statistics/statistics.h"
+
 namespace simbench::evaluation {
 namespace {
 
@@ -37,6 +39,31 @@ double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
     squares += difference * difference;
   }
   return std::sqrt(squares / static_cast<double>(stamps_ns.size())) * kMsPerNs;
+}
+
+double mean_difference_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
+                          std::vector<std::int64_t>& workspace) {
+  workspace.assign(stamps_ns.begin(), stamps_ns.end());
+  const std::int64_t base = stamps_ns.front();
+  const double median = median_above(base, kind, workspace);
+  double sum = 0;
+  for (const std::int64_t stamp : stamps_ns) sum += static_cast<double>(stamp - base) - median;
+  return sum / static_cast<double>(stamps_ns.size()) * kMsPerNs;
+}
+
+void PrintedRmdv::add(double mean_difference_ms) {
+  ++pulses_;
+  if (mean_difference_ms < 0) return;
+  ++real_;
+  sum_ += std::sqrt(mean_difference_ms);
+}
+
+double PrintedRmdv::mean_sqrt_ms() const {
+  return real_ > 0 ? sum_ / static_cast<double>(real_) : kNan;
+}
+
+double PrintedRmdv::real_share() const {
+  return pulses_ > 0 ? static_cast<double>(real_) / static_cast<double>(pulses_) : kNan;
 }
 
 // The sum of squares is convex in the sorted stamps, so its maximum over all stamps of a given

@@ -9,6 +9,10 @@
 // For any stamps deviation_ms <= rmdv_bound() * spread_ms, and so RMDV <= bound * AMD: a published
 // pair that breaks it cannot come from eq. (4). Source: docs/reference/paper.md sections 6 and 7.
 //
+// PrintedRmdv is eq. (4) as printed, without the square, to look at: its mean of sqrt(radicand)
+// over pulses, the radicand being the mean signed difference from the median. No published value
+// can come from it (section 6).
+//
 //   const std::vector<std::int64_t> stamps = {0, 1'000'000, 3'000'000};
 //   spread_ms(stamps);                                            // 3
 //   deviation_ms(stamps, MedianKind::kUpperMiddle, workspace);    // sqrt((1 + 0 + 4) / 3)
@@ -32,6 +36,29 @@ double spread_ms(std::span<const std::int64_t> stamps_ns);
 // `workspace` is overwritten; kept by the caller, it saves an allocation per pulse. O(n).
 double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
                     std::vector<std::int64_t>& workspace);
+
+// Returns the mean of the signed differences from the median, which is the mean less the median:
+// the radicand of eq. (4) as printed. For n stamps it is from -1/2 to (n/2 - 1)/n of the spread,
+// and negative where the mean is below the median: in half of the pulses of a symmetric law, or
+// more, as the upper-middle element is above the middle. Else as deviation_ms().
+double mean_difference_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
+                          std::vector<std::int64_t>& workspace);
+
+// Eq. (4) as printed, over pulses. A pulse with a negative radicand has no real root and is left
+// out; real_share() tells how many are not.
+class PrintedRmdv {
+ public:
+  void add(double mean_difference_ms);
+  // The mean root, in sqrt(ms); NaN without a pulse that has one.
+  double mean_sqrt_ms() const;
+  // Pulses that have one, of all; NaN without pulses.
+  double real_share() const;
+
+ private:
+  std::int64_t pulses_ = 0;
+  std::int64_t real_ = 0;
+  double sum_ = 0;
+};
 
 // Returns the largest possible deviation_ms / spread_ms of n stamps: 1/sqrt(2) for the upper-middle
 // median of an even number, 2/3 for the mean of the middle two of 18.

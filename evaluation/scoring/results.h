@@ -47,9 +47,10 @@ struct SeedScore : MetricValues<double> {
   SetCounts sets;
   // Frames whose place in GenLock order differs from their pulse; genlock only.
   std::int64_t genlock_index_errors = 0;
-  std::vector<PulseScore> pulses;      // with EvaluationOptions::keep_pulses
-  std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
-  std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
+  std::vector<PulseScore> pulses;         // with EvaluationOptions::keep_pulses
+  std::vector<double> host_errors_ms;     // signed mean over the evaluated pulses, per host
+  std::vector<SyncOutcome> failures;      // of host synchronisation, only those not synchronised
+  std::vector<SessionDelays> sessions{};  // the last pass of each slave that reported one, by host
   RecordingCost cost;
 };
 
@@ -81,7 +82,7 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
 };
 
 struct Claim {
-  std::string id;                        // "C1" ... "C10", docs/reference/paper.md section 11
+  std::string id;                        // "C1" ... "C12", docs/reference/paper.md section 11
   std::string text;                      // with its threshold
   std::optional<double> holds_fraction;  // of seeds; nothing if it needs another scenario
   std::string needs;                     // then: which
@@ -117,6 +118,7 @@ struct Results {
   ClockPeriod clock_period{};  // of clock runs
   std::string scenario;
   scenarios::Derivation derivation{};  // of that scenario
+  bool draws_load = false;             // of each pipeline, Scenario::draws_load()
   std::uint64_t first_seed = 1;
   std::uint64_t seed_count = 0;
   std::vector<Row> rows;

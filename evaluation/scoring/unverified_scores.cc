@@ -74,6 +74,7 @@ void UnverifiedScores::on_set(std::span<const GatherFrame> set) {
   if (host_of_camera_.size() > 1) {  // the stamp of a single camera has no range
     scored.spread_ms = spread_ms(stamps_ns_);
     scored.deviation_ms = deviation_ms(stamps_ns_, median_, sorted_);
+    printed_.add(mean_difference_ms(stamps_ns_, median_, sorted_));
   }
   if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now());
 }
@@ -99,6 +100,8 @@ void UnverifiedScores::score(SeedScore& score) const {
   score.amd_ms = spreads_ms / count;
   score.set_amd_ms = score.amd_ms;
   score.rmdv_ms = deviations_ms / count;
+  score.rmdv_printed_sqrt_ms = printed_.mean_sqrt_ms();
+  score.rmdv_printed_share = printed_.real_share();
 }
 
 }  // namespace simbench::evaluation

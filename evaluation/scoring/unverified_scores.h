@@ -51,8 +51,8 @@ class UnverifiedScores final : public TimedSetSink {
   void on_set(std::span<const GatherFrame> set) override;
   void on_partial_set(std::span<const GatherFrame> set) override;
 
-  // Sets amd_ms, rmdv_ms, set_amd_ms, the emission latencies, frames, sets and pulses (where a set
-  // has its number in place of the pulse). The rest of `score` stays.
+  // Sets amd_ms, rmdv_ms, that as printed, set_amd_ms, the emission latencies, frames, sets and
+  // pulses (where a set has its number in place of the pulse). The rest of `score` stays.
   void score(SeedScore& score) const;
 
  private:
@@ -68,6 +68,7 @@ class UnverifiedScores final : public TimedSetSink {
   FrameCounts frames_;
   std::int64_t partial_ = 0;
   std::vector<PulseScore> sets_;
+  PrintedRmdv printed_;
   double latency_sum_ms_ = 0;
   double latency_max_ms_ = 0;
   std::vector<std::int64_t> stamps_ns_;  // workspaces

@@ -206,6 +206,13 @@ std::vector<std::string> check_point(const SweepPlan& plan, const SweepRequest& 
   }
 }
 
+bool sweeps_load(const SweepPlan& plan) {
+  const std::vector<std::string> pointers = plan.pointers();
+  return std::ranges::any_of(Scenario::kLoadMembers, [&](const char* member) {
+    return std::ranges::find(pointers, member) != pointers.end();
+  });
+}
+
 }  // namespace
 
 SweepAxis parse_axis(const std::string& text) {
@@ -293,6 +300,7 @@ SweepPlan make_plan(const SweepRequest& request) {
   const Scenario scenario = scenarios::load_scenario(request.scenario, request.overrides);
   plan.scenario = scenario.name;
   plan.derivation = scenario.derivation;
+  plan.draws_load = scenario.draws_load() || sweeps_load(plan);
   plan.scenario_json = scenario.resolved_json();
   ClockPipelines chosen = pipelines_of(scenario, request, request.pipelines);
   plan.pipelines = std::move(chosen.names);

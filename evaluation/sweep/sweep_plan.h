@@ -70,6 +70,7 @@ struct SweepRun {
 struct SweepPlan {
   std::string scenario;                // its name
   scenarios::Derivation derivation{};  // of the scenario without the axes
+  bool draws_load = false;             // Scenario::draws_load(), of that scenario or by an axis
   std::string scenario_json;           // resolved, with the overrides for all points
   std::vector<SweepAxis> axes;
   std::vector<std::string> pipelines;

@@ -128,5 +128,6 @@ class HostPort:
     has_card: Any
     stored_frequency: Any
     failed: Any
+    report_delays: Any
     camera: Any
     report: Any

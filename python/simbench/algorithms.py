@@ -56,7 +56,7 @@ class GatheringSetup(NamedTuple):
     sources: int
     period_ns: int  # nominal frame period
     interval_ns: int  # the largest range of a set
-    queue_limit: int
+    queue_limit: Optional[int]  # frames that may wait per source; None: as the algorithm will
 
 
 @dataclasses.dataclass(frozen=True)

@@ -183,6 +183,22 @@ class Host:
         """Reports that the clock could not be synchronised, and what would help."""
         self._port.failed(why)
 
+    def report_delays(self, t_l_ns: float, t_t_ns: float, t_d_ns: float, get_ns: float = 0,
+                      set_ns: float = 0, pass_number: int = 1,
+                      begin_steady_ns: Optional[int] = None,
+                      end_steady_ns: Optional[int] = None) -> None:
+        """Reports what a slave measured in a pass of its session, and added: as yoon2021 does.
+
+        t_l: network delay, t_t: time delay, t_d: what was added to the master's time; get and set:
+        what a reading and a setting of the clock took. The pass began and ended now, unless stated.
+        The last pass of a session is the one that counts in results.
+        """
+        now = self.steady_ns
+        begin = now if begin_steady_ns is None else begin_steady_ns
+        end = now if end_steady_ns is None else end_steady_ns
+        self._port.report_delays(pass_number, [begin, end] + [
+            round(ns) for ns in (t_l_ns, t_t_ns, t_d_ns, get_ns, set_ns)])
+
 
 class Exposure(NamedTuple):
     """A frame of a camera as Camera.next_frame() returns it."""

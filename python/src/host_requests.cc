@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/deferred.hpp>
 #include <boost/asio/experimental/parallel_group.hpp>
@@ -485,6 +486,23 @@ void report_failure(HostPort& port, const std::string& why) {
   port.outcome.failed(port.exchanges, why);
 }
 
+// The members in the order of SessionDelays; the slave is the host.
+void report_delays(HostPort& port, std::uint32_t pass, std::array<std::int64_t, 7> ns) {
+  if (port.steers()) throw py::value_error("report_delays(): of a host_sync alone");
+  Host& host = port.get();
+  if (host.id() == 0) throw py::value_error("report_delays(): of a slave; this is the master");
+  if (pass == 0) throw py::value_error("pass_number: found 0, allowed: from 1");
+  host.report_delays({.slave = host.id(),
+                      .pass = pass,
+                      .begin = SteadyTime(Nanoseconds(ns[0])),
+                      .end = SteadyTime(Nanoseconds(ns[1])),
+                      .t_l = Nanoseconds(ns[2]),
+                      .t_t = Nanoseconds(ns[3]),
+                      .t_d = Nanoseconds(ns[4]),
+                      .get = Nanoseconds(ns[5]),
+                      .set = Nanoseconds(ns[6])});
+}
+
 }  // namespace
 
 void bind_host_port(py::module_& module) {
@@ -501,6 +519,7 @@ void bind_host_port(py::module_& module) {
              return std::pair(stored->ppb, stored->error_ppb);
            })
       .def("failed", &report_failure)
+      .def("report_delays", &report_delays)
       .def("camera", &camera_facts)
       .def("report",
            [](HostPort& port, std::uint32_t place, bool aligned, const std::string& message) {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 
+#include "algorithms/ports/assert.h"
 #include "algorithms/ports/stage.h"
 #include "evaluation/clock_run/clock_score.h"
 #include "recording/collected.h"
@@ -94,13 +97,29 @@ std::string manifest_json(const Provenance& provenance, const evaluation::Result
   return manifest_json(provenance, more);
 }
 
+void write_archive_files(OutputFolder& output, const std::string& prefix,
+                         const evaluation::Results& results, const scenarios::Scenario& scenario,
+                         const Provenance& provenance) {
+  output.file(prefix + kManifest) << manifest_json(provenance, results, scenario);
+  output.file(prefix + "results.json") << json(results);
+  write_frames_csv(results, output.file(prefix + "frames.csv"));
+  write_hosts_csv(results, output.file(prefix + "hosts.csv"));
+}
+
 void write_archive(OutputFolder& output, const evaluation::Results& results,
                    const scenarios::Scenario& scenario, const Provenance& provenance) {
-  output.file("manifest.json") << manifest_json(provenance, results, scenario);
-  output.file("results.json") << json(results);
-  write_frames_csv(results, output.file("frames.csv"));
-  write_hosts_csv(results, output.file("hosts.csv"));
+  write_archive_files(output, "", results, scenario, provenance);
   output.publish();
+}
+
+Archive kept_archive(const std::string& path, const evaluation::Results& results,
+                     const scenarios::Scenario& scenario, const Provenance& provenance) {
+  return {.path = path,
+          .command = provenance.command,
+          .started = utc_text(provenance.started),
+          .finished = utc_text(provenance.finished),
+          .scenario_json = scenario.resolved_json(),
+          .results = results};
 }
 
 evaluation::ResultKind read_result_kind(const JsonNode& root, const char* member) {
@@ -258,6 +277,7 @@ evaluation::Results read_results(const JsonNode& root) {
   const bool is_of_clocks = results.kind == evaluation::ResultKind::kClockRuns;
   results.scenario = root["scenario"].text();
   results.derivation = read_derivation(root);
+  results.draws_load = root.has(kOwnLoadMember) && root[kOwnLoadMember].flag();
   results.first_seed = static_cast<std::uint64_t>(root["seeds"]["first"].count());
   results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
   for (const JsonNode& row : root["rows"].elements()) {
@@ -323,7 +343,9 @@ namespace {
 
 using evaluation::SeedScore;
 
-constexpr std::size_t kCells = 5;  // of a line of either file, before those of a changed world
+constexpr std::size_t kMostCells = 11;    // of a line, before those of a changed world
+constexpr std::size_t kSessionCells = 5;  // from there on hosts.csv has the delays of sessions
+constexpr double kLongestMs = 1e9;        // of a delay
 
 LineReader lines_of_archive(const std::string& path) {
   try {
@@ -337,30 +359,34 @@ LineReader lines_of_archive(const std::string& path) {
 // One of the archive's CSV files, line by line. The first cell may be quoted (RFC 4180).
 class CsvFile {
  public:
-  // `old_header`: of archives before simbench 0.2.
-  CsvFile(const Archive& archive, const char* name, std::string_view header,
-          std::string_view old_header)
+  // `headers`: the present one first, then those of older archives.
+  CsvFile(const Archive& archive, const char* name, std::initializer_list<std::string_view> headers)
       : lines_(lines_of_archive((std::filesystem::path(archive.path) / name).string())) {
     const bool found = next();
-    const std::string_view stated = line_.starts_with(old_header) ? old_header : header;
-    changed_ = found && line_ == std::string(stated) + ",changed";
-    if (!found || (line_ != stated && !changed_)) {
-      fail(fmt::format("line 1 has to be '{}', of a changed world with ',changed'", header));
+    const auto* const stated = std::ranges::find_if(headers, [this](std::string_view header) {
+      changed_ = line_ == std::string(header) + ",changed";
+      return changed_ || line_ == header;
+    });
+    if (!found || stated == headers.end()) {
+      fail(fmt::format("line 1 has to be '{}', of a changed world with ',changed'",
+                       *headers.begin()));
     }
+    size_ = static_cast<std::size_t>(std::ranges::count(*stated, ',')) + 1;
+    SIMBENCH_ASSERT(size_ <= kMostCells, "there is a place for each cell");
   }
 
-  // Splits the next line, which must have kCells cells, and of a changed world the changes; false
-  // at the end.
+  // Splits the next line, which must have a cell for each of the header, and of a changed world the
+  // changes; false at the end.
   bool next_row() {
     if (!next()) return false;
     std::string_view rest = line_;
     name_ = take_name(rest);
-    for (std::size_t i = 1; i < kCells; ++i) {
+    for (std::size_t i = 1; i < size_; ++i) {
       const std::size_t comma = rest.find(',');
-      const bool last = i == kCells - 1 && !changed_;
+      const bool last = i == size_ - 1 && !changed_;
       if ((comma == std::string_view::npos) != last) {
         fail(fmt::format("allowed: exactly {} cells; was the file cut short?",
-                         kCells + (changed_ ? 1 : 0)));
+                         size_ + (changed_ ? 1 : 0)));
       }
       cells_[i] = rest.substr(0, comma);
       rest.remove_prefix(last ? rest.size() : comma + 1);
@@ -373,6 +399,7 @@ class CsvFile {
     return true;
   }
 
+  std::size_t size() const { return size_; }
   const std::string& name() const { return name_; }
   std::string_view text(std::size_t cell) const { return cells_[cell]; }
   template <class Number>
@@ -423,7 +450,8 @@ class CsvFile {
   LineReader lines_;
   std::string_view line_;
   std::string name_;
-  std::string_view cells_[kCells];
+  std::string_view cells_[kMostCells];
+  std::size_t size_ = 0;
   bool changed_ = false;
   std::optional<std::string> changes_;
 };
@@ -448,6 +476,23 @@ SeedScore& score_of(const CsvFile& file, evaluation::Results& results, Row*& row
   return row->seeds[seed - results.first_seed];
 }
 
+// The delays of a line of hosts.csv; nothing of a host without a session.
+std::optional<SessionDelays> session_of(const CsvFile& hosts) {
+  if (hosts.size() == kSessionCells || hosts.text(kSessionCells).empty()) return std::nullopt;
+  const auto delay = [&hosts](std::size_t place) {
+    const auto ms = hosts.number<double>(kSessionCells + place);
+    if (std::abs(ms) <= kLongestMs) return from_ms(ms);
+    hosts.fail(fmt::format("found {} ms, allowed: at most {} either way", ms, kLongestMs));
+  };
+  return SessionDelays{.slave = hosts.number<PeerId>(2),
+                       .pass = hosts.number<std::uint32_t>(kSessionCells + 3),
+                       .t_l = delay(0),
+                       .t_t = delay(1),
+                       .t_d = delay(2),
+                       .get = delay(4),
+                       .set = delay(5)};
+}
+
 }  // namespace
 
 void read_seed_details(Archive& archive) {
@@ -456,8 +501,9 @@ void read_seed_details(Archive& archive) {
     each.seeds.assign(results.seed_count, SeedScore{});
     for (std::size_t i = 0; i < each.seeds.size(); ++i) each.seeds[i].seed = results.first_seed + i;
   }
-  CsvFile frames(archive, "frames.csv", "pipeline,seed,pulse,amd_ms,rmdv_ms",
-                 "pipeline,seed,pulse,spread_ms,deviation_ms");
+  CsvFile frames(archive, "frames.csv",
+                 {"pipeline,seed,pulse,amd_ms,rmdv_ms",
+                  "pipeline,seed,pulse,spread_ms,deviation_ms"});  // before simbench 0.2
   Row* row = nullptr;
   while (frames.next_row()) {
     score_of(frames, results, row)
@@ -465,8 +511,9 @@ void read_seed_details(Archive& archive) {
                            .spread_ms = frames.value(3),
                            .deviation_ms = frames.value(4)});
   }
-  CsvFile hosts(archive, "hosts.csv", "pipeline,seed,host,host_error_ms,synchronised",
-                "pipeline,seed,host,error_ms,synchronised");
+  CsvFile hosts(archive, "hosts.csv",
+                {kHostsHeader, "pipeline,seed,host,host_error_ms,synchronised",
+                 "pipeline,seed,host,error_ms,synchronised"});  // before simbench 0.2
   while (hosts.next_row()) {
     SeedScore& score = score_of(hosts, results, row);
     if (hosts.number<std::size_t>(2) != score.host_errors_ms.size()) {
@@ -474,6 +521,7 @@ void read_seed_details(Archive& archive) {
                              score.host_errors_ms.size()));
     }
     score.host_errors_ms.push_back(hosts.value(3));
+    if (const auto session = session_of(hosts)) score.sessions.push_back(*session);
   }
 }
 

@@ -4,7 +4,7 @@
 //                   seeds, version, commit, command, start and end
 //   results.json    see reports/results/json.h
 //   frames.csv      spread and deviation of every evaluated pulse
-//   hosts.csv       mean clock error of every host
+//   hosts.csv       mean clock error of every host, and the delays of its session if it had one
 //
 // Only manifest.json (its clock times) and /performance in results.json differ between equal runs.
 //
@@ -54,6 +54,12 @@ std::string manifest_json(const Provenance& provenance, const evaluation::Result
 void write_archive(OutputFolder& output, const evaluation::Results& results,
                    const scenarios::Scenario& scenario, const Provenance& provenance);
 
+// Writes the files of an archive under names that begin with `prefix` ("45fps/": a folder in the
+// folder), for a folder of more than one; publishes nothing.
+void write_archive_files(OutputFolder& output, const std::string& prefix,
+                         const evaluation::Results& results, const scenarios::Scenario& scenario,
+                         const Provenance& provenance);
+
 // What the results of a file are of: the member, which only files of clock runs have.
 inline constexpr const char* kClockRunsName = "clocks";
 evaluation::ResultKind read_result_kind(const JsonNode& root, const char* member);
@@ -83,8 +89,12 @@ bool is_of_files(const Archive& archive);
 // `path`: an archive's folder, or a results.json alone, without a manifest.
 Archive read_archive(const std::string& path);
 
-// Sets Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else. The
-// archive must be a folder.
+// The archive that write_archive() makes of these at `path`, with the seed details of the results.
+Archive kept_archive(const std::string& path, const evaluation::Results& results,
+                     const scenarios::Scenario& scenario, const Provenance& provenance);
+
+// Sets Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms, of sessions the
+// slave, its last pass and its delays, and nothing else. The archive must be a folder.
 void read_seed_details(Archive& archive);
 
 }  // namespace simbench::reports

@@ -10,6 +10,7 @@
 #include "evaluation/clock_run/clock_score.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/results/metric_columns.h"
 #include "reports/results/results_document.h"
@@ -103,6 +104,7 @@ std::vector<std::string> legend(const ClockResults& results) {
   }
   lines.emplace_back(
       "ADEV and TDEV: RMS over slaves and seeds. MTIE: the largest of any slave and seed.");
+  if (results.results.draws_load) lines.push_back(fmt::format("rows of one seed: {}.", kOwnLoad));
   return lines;
 }
 
@@ -177,6 +179,7 @@ std::string clock_json(const ClockResults& results) {
                {"commit", commit()},
                {"scenario", of.scenario}};
   state_derivation(of.derivation, root);
+  if (of.draws_load) root[kOwnLoadMember] = true;
   root.update({{"seeds", {{"first", of.first_seed}, {"count", of.seed_count}}},
                {"duration_s", of.clock_period.duration_s},
                {"from_s", of.clock_period.from_s},

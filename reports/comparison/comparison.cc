@@ -6,6 +6,7 @@
 
 #include "recording/collected.h"
 #include "reports/comparison/comparison_scenarios.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
@@ -90,6 +91,14 @@ std::string described(const Archive& archive) {
                   a.path, b.path, what));
 }
 
+// Only rows of one pipeline in scenarios of one name have the same load in a seed.
+void note_own_load(const evaluation::Results& a, const evaluation::Results& b,
+                   std::vector<std::string>& notes) {
+  if (!a.draws_load && !b.draws_load) return;
+  notes.push_back(
+      fmt::format("{}; intervals and verdicts take that for chance, as it is", kOwnLoad));
+}
+
 // Refuses other worlds, or adds the differences to `notes`.
 void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions& options,
                      std::vector<std::string>& notes) {
@@ -124,7 +133,10 @@ void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions
     notes.push_back(fmt::format(
         "different worlds (--different-scenarios), which cause the differences: {}", world));
   }
-  if (name_a != name_b) notes.push_back(names);
+  if (name_a != name_b) {
+    notes.push_back(names);
+    note_own_load(a.results, b.results, notes);
+  }
   if (!found.algorithms.empty()) {
     notes.push_back(fmt::format("the algorithms differ: {}", first_few(found.algorithms)));
   }
@@ -214,6 +226,7 @@ Comparison compare_pipelines(const Archive& archive, const std::string& a, const
   comparison.b = fmt::format("pipeline {} of {}", b, described(archive));
   compare({{&row_of(archive, a, "--pipelines"), &row_of(archive, b, "--pipelines")}}, pairing,
           options, archive.results.kind, comparison);
+  if (a != b) note_own_load(archive.results, archive.results, comparison.notes);
   return comparison;
 }
 
@@ -235,6 +248,7 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
         fmt::format("--with-baseline: {} has no pipeline beside {}", archive.path, baseline));
   }
   compare(rows, pairing, options, archive.results.kind, comparison);
+  note_own_load(archive.results, archive.results, comparison.notes);
   return comparison;
 }
 

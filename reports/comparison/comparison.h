@@ -5,6 +5,10 @@
 // differences (version, commit, seeds, pipelines, parameters of the algorithms). Statistics and
 // verdicts are those of evaluation/statistics/paired.h.
 //
+// Where a scenario draws the load of each pipeline's sessions (Scenario::draws_load()), pipelines
+// of one archive share all of a seed but these, and so do archives of scenarios with other names:
+// the notes say so. Archives of one scenario share the loads, too.
+//
 // All verdicts of one comparison, pipelines times metrics, are corrected for their number together.
 //
 // Errors: scenarios::InputError, which states the difference and what can be compared instead:

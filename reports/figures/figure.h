@@ -102,6 +102,13 @@ struct FigureSource {
   std::string commit = std::string(simbench::commit());
 };
 
+// What the paper's figure has and this one has not.
+struct FigureLack {
+  std::string what;          // "back-end stamps"
+  std::string scenario;      // a built-in one that has it
+  bool was_recorded = true;  // false: the capture cannot show it, whatever happened
+};
+
 struct Figure {
   std::string id;  // "frame_errors", as in `simbench figure`
   std::string title;
@@ -112,6 +119,7 @@ struct Figure {
   std::vector<FigurePanel> panels{};
   std::vector<PhotographRow> photographs{};
   std::string absent{};  // the reason if there is nothing to draw; then there are no panels
+  std::vector<FigureLack> lacks{};  // also stated in the caption
   FigureSource source{};
 };
 
@@ -119,12 +127,25 @@ struct Figure {
 // once. A few exist for each pipeline (Figure::pipeline) besides their scope.
 enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun, kRecording };
 
+// A number of the paper that is of one frame rate.
+struct PaperRate {
+  std::string alias;  // "fig9"
+  std::string paper;  // "Fig. 9"
+  double rate_hz = 0;
+  std::string scenario;  // the built-in one that has it
+};
+
 struct FigureEntry {
   std::string id;
   std::string title;
   std::string paper;                 // "Fig. 9, 10"; empty: none
   std::vector<std::string> aliases;  // "fig9", "fig10"
   FigureScope scope = FigureScope::kRun;
+  // What is drawn where nothing is named: the built-in world that has what the paper's figure
+  // shows, and of a figure of one pipeline the paper's. Empty: what the user names.
+  std::string scenario{};
+  std::string pipeline{};
+  std::vector<PaperRate> rates{};  // empty: the paper's figure is of no stated rate
 };
 
 // "18cam_6host_45fps (changed), yoon2021_both, 2 seeds (1-2), simbench 0.1.0 (1234567)", and the
@@ -136,8 +157,20 @@ const std::vector<FigureEntry>& figure_catalogue();
 
 // By id or alias; null if there is none.
 const FigureEntry* find_figure(std::string_view name);
-// The same; throws scenarios::InputError if there is none.
+// The same; throws scenarios::InputError if there is none. A figure of the paper that no stamps can
+// draw is refused with the place of the same content.
 const FigureEntry& figure_named(std::string_view name);
+
+// The built-in scenario that the figure is drawn of by itself: of an alias that is of one rate,
+// that of this rate. Empty: there is none.
+const std::string& scenario_of_figure(const FigureEntry& entry, std::string_view name);
+
+// Refuses frames of another rate than the paper's figure of this name has: throws
+// scenarios::InputError, which names the right figure. The id itself is of any rate.
+void check_rate(const FigureEntry& entry, std::string_view name, double rate_hz);
+
+// The numbers of the paper that the figure at this rate has: "Fig. 9"; empty: none.
+std::string paper_numbers(const FigureEntry& entry, double rate_hz);
 
 // Returns a figure as tidy CSV, one line for each point:
 //

@@ -114,6 +114,19 @@ Figure absent(Figure figure, std::string why) {
   return figure;
 }
 
+Figure without_truth(Figure figure, std::string_view what) {
+  return absent(std::move(figure),
+                fmt::format("The capture has no {}, which only a simulated world knows; `simbench "
+                            "record --scenario 18cam_6host_45fps -o DIR` records one that has.",
+                            what));
+}
+
+void add_lack(Figure& figure, FigureLack lack) {
+  figure.caption +=
+      fmt::format(" The paper's figure also has {}, as {} has.", lack.what, lack.scenario);
+  figure.lacks.push_back(std::move(lack));
+}
+
 FigurePanel panel(std::string title, std::string x_label, std::string y_label) {
   FigurePanel made;
   made.title = std::move(title);

@@ -11,6 +11,9 @@
 
 namespace simbench::reports {
 
+// The world that has, unlike the fitted ones, jumps of arrivals and an unsteady start.
+inline constexpr const char* kNominalWorld = "18cam_6host_45fps_lan";
+
 // Points of a series beyond which it is thinned.
 inline constexpr std::size_t kMostPoints = 600;
 
@@ -20,6 +23,11 @@ Figure catalogued(std::string_view id);
 Figure of_run(std::string_view id, const evaluation::RunDetail& run);
 // The figure with nothing to draw, and the reason.
 Figure absent(Figure figure, std::string why);
+
+// The same for what only a simulated world knows; the reason has the command that records it.
+Figure without_truth(Figure figure, std::string_view what);
+// The figure, of whose caption this is the last statement so far.
+void add_lack(Figure& figure, FigureLack lack);
 
 // An empty panel.
 FigurePanel panel(std::string title, std::string x_label, std::string y_label);

@@ -1,6 +1,7 @@
 #include "reports/figures/result_figures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/counted.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/results/metric_columns.h"
 #include "reports/text/number_text.h"
@@ -54,6 +56,17 @@ std::vector<RowRef> four_rows(const Results& results) {
     rows.push_back({&results.rows[i], static_cast<int>(i)});
   }
   return rows;
+}
+
+// States which of the paper's rows there are not.
+void note_missing(const Results& results, Figure& figure) {
+  std::vector<std::string_view> missing;
+  for (const std::string_view name : kPaperRows) {
+    if (evaluation::find_row(results.rows, std::string(name)) == nullptr) missing.push_back(name);
+  }
+  if (missing.empty()) return;
+  add_lack(figure,
+           {.what = fmt::format("{}", fmt::join(missing, ", ")), .scenario = "18cam_6host_45fps"});
 }
 
 std::vector<RowRef> first_rows(const Results& results) {
@@ -119,6 +132,34 @@ FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std
   }
   choose_scale(made);
   return made;
+}
+
+// Which pipeline's AMD changes most along the recording, by its least-squares line. The paper sees
+// no such change.
+std::string trend_text(const std::vector<RowRef>& rows, std::uint64_t seed) {
+  double largest = 0;
+  std::string pipeline;
+  for (const RowRef& ref : rows) {
+    const SeedScore* score = seed_of(*ref.row, seed);
+    if (score == nullptr || score->pulses.size() < 2) continue;
+    std::vector<double> at;
+    std::vector<double> spreads;
+    for (const PulseScore& pulse : score->pulses) {
+      at.push_back(static_cast<double>(pulse.pulse));
+      spreads.push_back(pulse.spread_ms);
+    }
+    const evaluation::FittedLine line = evaluation::fit_line(at, spreads);
+    const double change = line.slope * (at.back() - at.front()) / line.mean_y;
+    if (!(std::abs(change) > std::abs(largest))) continue;
+    largest = change;
+    pipeline = ref.row->pipeline;
+  }
+  if (pipeline.empty()) return "";
+  return fmt::format(
+      " Over the recording the AMD of {} changes most along its least-squares line, by {:+.1f} % "
+      "of "
+      "its mean.",
+      pipeline, largest * 100);
 }
 
 // A metric's quantiles over seeds, as the tables have them (evaluation/statistics/statistics.h).
@@ -197,7 +238,9 @@ Figure order_figure(const std::vector<RowRef>& rows) {
   }
   if (medians.series.empty()) {
     return absent(std::move(figure),
-                  "There is no slave host, or the archive holds no errors of host clocks.");
+                  "There is no slave host, or no errors of host clocks were recorded, which only a "
+                  "simulated world knows; `simbench run --scenario SCENARIO --output DIR` keeps "
+                  "them.");
   }
   choose_scale(medians);
   const bool is_log = medians.log_y;
@@ -205,8 +248,12 @@ Figure order_figure(const std::vector<RowRef>& rows) {
   if (!single.series.empty()) figure.panels.push_back(std::move(single));
   figure.caption =
       "System clock of each slave minus the master's, mean over the evaluated pulses. The paper's "
-      "procedure synchronises the hosts one after another; its error should not grow along the "
-      "line.";
+      "procedure synchronises the hosts one after another, in this order.";
+  if (rows.size() == 1 && figure.panels.front().series.front().y.size() > 1) {
+    const std::vector<double>& medians_ms = figure.panels.front().series.front().y;
+    figure.caption += fmt::format(" From the first slave to the last the median is {} and {}.",
+                                  time_text(medians_ms.front()), time_text(medians_ms.back()));
+  }
   if (is_log) figure.caption += kLogNote;
   return figure;
 }
@@ -289,16 +336,18 @@ Figure frame_errors(const Archive& archive, std::uint64_t seed) {
   if (amd.series.empty()) {
     return absent(std::move(figure),
                   "No pulse was delivered by all of several cameras, or the archive has no "
-                  "frames.csv.");
+                  "frames.csv; `simbench run --scenario SCENARIO --output DIR` writes one.");
   }
   add_published(rows, &Published::amd_ms, amd);
   FigurePanel rmdv = pulse_panel(rows, seed, "Terms of RMDV", "deviation from the median (ms)",
                                  &PulseScore::deviation_ms);
   add_published(rows, &Published::rmdv_ms, rmdv);
-  figure.panels = {std::move(amd), std::move(rmdv)};
   figure.caption =
-      "One point for every pulse that all cameras delivered; the mean of a curve is the pipeline's "
-      "AMD or RMDV at this seed. Lines are published means.";
+      "One point for every pulse that all cameras delivered; the mean over these is the pipeline's "
+      "AMD or RMDV at this seed. Lines are published means." +
+      trend_text(rows, seed);
+  note_missing(archive.results, figure);
+  figure.panels = {std::move(amd), std::move(rmdv)};
   return figure;
 }
 

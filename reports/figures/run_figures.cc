@@ -13,8 +13,11 @@
 #include <string>
 #include <utility>
 
+#include "recording/counted.h"
+#include "reports/figures/caption_facts.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -219,8 +222,7 @@ FigurePanel sets_panel(const RunDetail& run) {
   return made;
 }
 
-constexpr std::size_t kCamerasOfAHost = 3;   // as in the paper's figures
-constexpr std::size_t kFramesOfStamps = 60;  // more are not distinguishable
+constexpr std::size_t kCamerasOfAHost = 3;  // as in the paper's figures
 constexpr double kFirstSeconds = 10;
 
 constexpr const char* kNoFrames = "No camera of the master host has frames after the warm-up.";
@@ -238,6 +240,20 @@ FigureSeries interval_series(const RunDetail& run, std::size_t camera, double Fr
              frame.counter == before.counter + 1 ? frame.*stamp - before.*stamp : evaluation::kNan);
   }
   return thinned(std::move(made), kMostPoints);
+}
+
+// What of the paper's Fig. 2 the camera's stamps have not.
+void note_lacking_stamps(const RunDetail& run, std::size_t camera, Figure& figure) {
+  const CameraDetail& of_camera = run.cameras[camera];
+  if (is_copy(of_camera, &FrameDetail::frame_ms)) {
+    add_lack(figure, {.what = "frame stamps", .scenario = kNominalWorld, .was_recorded = false});
+  }
+  if (is_copy(of_camera, &FrameDetail::backend_ms)) {
+    add_lack(figure, {.what = "back-end stamps", .scenario = kNominalWorld, .was_recorded = false});
+  }
+  if (interval_facts(run, camera, &FrameDetail::arrival_ms).jumps == 0) {
+    add_lack(figure, {.what = "rare large jumps of the arrivals", .scenario = kNominalWorld});
+  }
 }
 
 // The first frames after the warm-up.
@@ -358,7 +374,7 @@ FigureSeries spread_series(const std::vector<FigureSeries>& differences) {
 Figure exposures(const RunDetail& run) {
   Figure figure = of_run("exposures", run);
   if (!run.has_truth) {
-    return absent(std::move(figure), "Only a simulated world has the true exposures.");
+    return without_truth(std::move(figure), "true exposures");
   }
   if (run.cameras.size() < 2 || run.cameras.front().frames.empty()) {
     return absent(std::move(figure), "It takes the frames of two cameras.");
@@ -391,7 +407,7 @@ Figure host_clocks(const RunDetail& run) {
     return absent(std::move(figure), "There is one host: its clock is the master's.");
   }
   if (run.clocks.empty()) {
-    return absent(std::move(figure), "Only a simulated world has the true clock errors.");
+    return without_truth(std::move(figure), "true errors of the hosts' clocks");
   }
   constexpr double kAll = -std::numeric_limits<double>::infinity();
   figure.panels.push_back(clock_panel(run, "All of the run", kAll));
@@ -445,14 +461,17 @@ Figure stamp_intervals(const RunDetail& run) {
   const std::vector<std::size_t> cameras = cameras_of_host(run, 0, 1);
   if (cameras.empty()) return absent(std::move(figure), kNoFrames);
   for (const Stamp& stamp : kStamps) {
+    if (is_copy(run.cameras[cameras.front()], stamp.member)) continue;
     FigurePanel made = frame_panel(run, stamp.title, "interval (ms)");
     made.series.push_back(interval_series(run, cameras.front(), stamp.member));
     if (!has_points(made.series.front())) return absent(std::move(figure), kNoFrames);
     figure.panels.push_back(std::move(made));
   }
   figure.caption = fmt::format(
-      "Intervals between consecutive frames of {}, nominally {:.3f} ms. A gap is a lost frame.",
-      camera_label(run, cameras.front()), 1000 / run.frame_rate_hz);
+      "Intervals between consecutive frames of {}, nominally {:.3f} ms. A gap is a lost frame.{}",
+      camera_label(run, cameras.front()), 1000 / run.frame_rate_hz,
+      intervals_text(run, cameras.front()));
+  note_lacking_stamps(run, cameras.front(), figure);
   return figure;
 }
 
@@ -468,10 +487,11 @@ Figure stamps(const RunDetail& run) {
   if (!has_stamps(sensor)) return absent(std::move(figure), kNoFrames);
   FigurePanel difference = difference_panel(run, arrival);
   figure.panels = {std::move(sensor), std::move(arrival), std::move(difference)};
-  figure.caption = fmt::format(
-      "The first {} frames after the warm-up. Every camera's clock has its own origin; the "
-      "arrivals, on one clock, nearly coincide.",
-      kFramesOfStamps);
+  figure.caption = fmt::format("The first {} frames after the warm-up.", kFramesOfStamps) +
+                   ranges_text(run, cameras_of_host(run, 0, kCamerasOfAHost));
+  if (figure.panels.front().series.size() < kCamerasOfAHost) {
+    add_lack(figure, {.what = "three cameras on the host", .scenario = "3cam_1host_30fps"});
+  }
   return figure;
 }
 
@@ -485,9 +505,8 @@ Figure global_stamps(const RunDetail& run) {
   if (!has_stamps(figure.panels.front())) return absent(std::move(figure), kNoFrames);
   figure.caption =
       "Global stamps by eq. (1) on the cameras of the master host, whichever device_time the "
-      "pipeline has. The paper plots the stamps themselves, where no difference is visible; both "
-      "include the delay from exposure to arrival.";
-  figure.caption += truth_note(run);
+      "pipeline has. The paper plots the stamps themselves, not their differences to a reference.";
+  figure.caption += online_offline_text(run, cameras) + truth_note(run);
   return figure;
 }
 
@@ -505,10 +524,12 @@ Figure hosts(const RunDetail& run) {
   if (!has_stamps(figure.panels.back())) {
     return absent(std::move(figure), "No frame of the first two hosts has a global stamp.");
   }
-  figure.caption = fmt::format(
-      "Global stamps of the pipeline, one colour for each host. Cameras of one host lie together; "
-      "what separates the hosts is the error of their clocks.{}{}",
-      others.empty() ? " This rig has one host with cameras." : "", truth_note(run));
+  figure.caption =
+      fmt::format("Global stamps of {}, one colour for each host.{}{}{}", run.pipeline,
+                  distance_text(run, cameras), before_synchronisation_note(run), truth_note(run));
+  if (others.empty()) {
+    add_lack(figure, {.what = "a second host with cameras", .scenario = "6cam_2host_30fps"});
+  }
   return figure;
 }
 
@@ -529,10 +550,16 @@ Figure first_seconds(const RunDetail& run) {
   if (warm_s > 0) {
     made.spans.push_back({"warm-up, not scored", 0, std::min(warm_s, kFirstSeconds)});
   }
-  figure.panels.push_back(std::move(made));
+  const SteadyFacts facts = steady_facts(made.series);
   figure.caption =
-      "The pipeline's device_time from each camera's first frame on. The paper found cameras "
-      "unsteady for 5 s and discards these; so does every score.";
+      "The pipeline's device_time from each camera's first frame on." + steady_text(facts);
+  if (warm_s > 0) {
+    figure.caption += fmt::format(" Scores begin after {}.", time_text(warm_s * 1000));
+  }
+  if (!facts.is_unsteady()) {
+    add_lack(figure, {.what = "unsteady intervals in the first 5 s", .scenario = kNominalWorld});
+  }
+  figure.panels.push_back(std::move(made));
   return figure;
 }
 

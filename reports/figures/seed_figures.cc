@@ -6,18 +6,23 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "recording/counted.h"
+#include "reports/figures/caption_facts.h"
 #include "reports/figures/figure_parts.h"
+#include "reports/text/time_text.h"
+#include "scenarios/words.h"
 
 namespace simbench::reports {
 namespace {
 
 using evaluation::CameraDetail;
 using evaluation::FrameDetail;
+using evaluation::OtherFrame;
 using evaluation::RunDetail;
 using Names = std::span<const std::string_view>;
 
@@ -76,6 +81,13 @@ FigurePanel all_cameras(const RunDetail& run, std::string_view what) {
   return made;
 }
 
+// What one of the two panels shows; nothing if there is none.
+std::string distance_of(std::string_view what, const RunDetail* run) {
+  if (run == nullptr) return "";
+  const std::string distance = distance_text(*run, kept_cameras(*run));
+  return distance.empty() ? "" : fmt::format(" {} ({}):{}", what, run->pipeline, distance);
+}
+
 // The evaluated frame of the master's first camera in the middle of the capture; null without any.
 const FrameDetail* middle_frame(const RunDetail& run) {
   const auto camera = std::find_if(run.cameras.begin(), run.cameras.end(),
@@ -117,25 +129,111 @@ const FrameDetail* nearest_frame(const CameraDetail& camera, double global_ms) {
   return nearest;
 }
 
-// Without photographs if there is nothing to photograph.
-PhotographRow photograph_row(const RunDetail& run) {
-  PhotographRow row{.label = run.pipeline, .photographs = {}};
+// An exposure in which a camera photographs the display.
+struct Shot {
+  std::size_t camera = 0;
+  double start_ms = 0;
+  double end_ms = 0;
+
+  double middle_ms() const { return (start_ms + end_ms) / 2; }
+};
+
+// The shots of a run at one instant: of the scored stream, and of the other where there is one.
+struct Shots {
+  std::vector<Shot> scored;
+  std::vector<Shot> other;
+};
+
+// The camera's other frame with the nearest sensor stamp: both are of its clock. Null without any.
+const OtherFrame* nearest_other(const CameraDetail& camera, double sensor_ms) {
+  const auto distance = [sensor_ms](const OtherFrame& frame) {
+    return std::abs(frame.sensor_ms - sensor_ms);
+  };
+  const auto nearest = std::ranges::min_element(camera.others, {}, distance);
+  return nearest == camera.others.end() ? nullptr : &*nearest;
+}
+
+Shots shots_of(const RunDetail& run) {
+  Shots shots;
   const FrameDetail* middle = middle_frame(run);
-  if (middle == nullptr || !run.has_truth) return row;
+  if (middle == nullptr || !run.has_truth) return shots;
   for (const std::size_t camera : photographers(run)) {
     const FrameDetail* frame = nearest_frame(run.cameras[camera], middle->global_ms);
     if (frame == nullptr) continue;
-    row.photographs.push_back({camera_label(run, camera),
-                               display_readings(frame->exposure_start_ms, frame->exposure_end_ms)});
+    shots.scored.push_back({camera, frame->exposure_start_ms, frame->exposure_end_ms});
+    const OtherFrame* other = nearest_other(run.cameras[camera], frame->sensor_ms);
+    if (other == nullptr) continue;
+    shots.other.push_back({camera, other->exposure_start_ms, other->exposure_end_ms});
   }
-  return row;
+  return shots;
 }
 
-// The runs of GenLock, the proposed method and NTP that exist, else the first ones.
+// The reading with the largest share.
+const std::string& main_reading(const Photograph& photograph) {
+  return std::ranges::max_element(photograph.readings, {}, &PhotographedReading::share)->text;
+}
+
+// Adds the row of these shots, and to the caption what it shows; nothing without shots.
+void add_row(const RunDetail& run, const std::string& label, const std::vector<Shot>& shots,
+             Figure& figure) {
+  if (shots.empty()) return;
+  PhotographRow row{.label = label, .photographs = {}};
+  std::map<std::string, std::size_t> cameras_of_reading;
+  for (const Shot& shot : shots) {
+    row.photographs.push_back(
+        {camera_label(run, shot.camera), display_readings(shot.start_ms, shot.end_ms)});
+    ++cameras_of_reading[main_reading(row.photographs.back())];
+  }
+  const auto most = std::ranges::max_element(cameras_of_reading, {},
+                                             [](const auto& reading) { return reading.second; });
+  const auto [first, last] = std::ranges::minmax(shots, {}, &Shot::middle_ms);
+  figure.caption += fmt::format(
+      " {}: {} of {} show {} (mostly), middles of the exposures within {}.", label, most->second,
+      shots.size(), most->first, time_text(last.middle_ms() - first.middle_ms()));
+  figure.photographs.push_back(std::move(row));
+}
+
+std::string_view other_of(scenarios::StreamKind stream) {
+  using scenarios::StreamKind;
+  return to_text(stream == StreamKind::kDepth ? StreamKind::kColour : StreamKind::kDepth);
+}
+
+// The figure of runs without any shot, and why.
+Figure unphotographed(Figure figure, const std::vector<const RunDetail*>& runs) {
+  if (runs.empty() || !runs.front()->has_truth) {
+    return without_truth(std::move(figure), "true exposures");
+  }
+  return absent(std::move(figure),
+                fmt::format("No {} frame after the warm-up has a global stamp, since no trigger "
+                            "pulse exposes that stream in {}; with /evaluation/stream \"{}\" both "
+                            "streams are photographed.",
+                            to_text(runs.front()->stream), to_text(runs.front()->sync_mode),
+                            other_of(runs.front()->stream)));
+}
+
+// Adds the rows of a run: one, or one for each stream.
+void add_rows(const RunDetail& run, Figure& figure) {
+  const Shots shots = shots_of(run);
+  if (shots.other.empty()) return add_row(run, run.pipeline, shots.scored, figure);
+  const auto label = [&run](std::string_view stream) {
+    return fmt::format("{} in {}, {}", run.pipeline, to_text(run.sync_mode), stream);
+  };
+  add_row(run, label(to_text(run.stream)), shots.scored, figure);
+  add_row(run, label(other_of(run.stream)), shots.other, figure);
+}
+
+// The runs of GenLock, the proposed method and NTP that exist, those of each sync mode together,
+// else the first ones.
 std::vector<const RunDetail*> photographed_runs(std::span<const RunDetail> runs) {
   std::vector<const RunDetail*> chosen;
-  for (const Names names : {Names(kGenlock), Names(kProposed), Names(kNtp)}) {
-    if (const RunDetail* run = run_named(runs, names)) chosen.push_back(run);
+  for (auto begin = runs.begin(); begin != runs.end();) {
+    const auto end = std::find_if(begin, runs.end(), [&begin](const RunDetail& run) {
+      return run.sync_mode != begin->sync_mode;
+    });
+    for (const Names names : {Names(kGenlock), Names(kProposed), Names(kNtp)}) {
+      if (const RunDetail* run = run_named({begin, end}, names)) chosen.push_back(run);
+    }
+    begin = end;
   }
   if (!chosen.empty()) return chosen;
   for (const RunDetail& run : runs.first(std::min(runs.size(), kMostRows))) chosen.push_back(&run);
@@ -184,9 +282,9 @@ Figure synchronisation(std::span<const RunDetail> runs) {
   if (with != nullptr) figure.panels.push_back(all_cameras(*with, "With"));
   const RunDetail& shown = with != nullptr ? *with : *without;
   figure.caption = fmt::format(
-      "Global stamps of {} on {}, one colour for each host. Note the different "
-      "scales: cameras of one host agree without synchronisation, hosts do not.{}{}{}",
+      "Global stamps of {} on {}, one colour for each host; the scales differ.{}{}{}{}{}",
       counted(shown.camera_count, "camera"), counted(shown.host_count, "host"),
+      distance_of("Without", without), distance_of("With", with),
       stand_in
           ? " The results do not have all of the paper's pipelines; those with the largest and "
             "the smallest AMD replace them."
@@ -197,19 +295,25 @@ Figure synchronisation(std::span<const RunDetail> runs) {
 
 Figure digital_clocks(std::span<const RunDetail> runs) {
   Figure figure = of_seed("digital_clocks", runs);
-  for (const RunDetail* run : photographed_runs(runs)) {
-    PhotographRow row = photograph_row(*run);
-    if (!row.photographs.empty()) figure.photographs.push_back(std::move(row));
-  }
-  if (figure.photographs.empty()) {
-    return absent(std::move(figure), "Photographs need frames and their true exposures.");
-  }
   figure.caption = fmt::format(
       "Simulated photographs of a clock on a {:.0f} Hz display, in the frames that each pipeline "
       "takes for simultaneous (global stamps nearest to the master's first camera, in the middle "
-      "of the capture). Equal readings mean cameras that are synchronised within the display's "
-      "steps of {:.1f} ms; an exposure across a step shows both readings, with their shares.",
+      "of the capture). Equal readings mean exposures in the same steps of {:.1f} ms, no more; an "
+      "exposure across a step shows both readings, with their shares.",
       kDisplayRateHz, 1000 / kDisplayRateHz);
+  const std::vector<const RunDetail*> photographed = photographed_runs(runs);
+  for (const RunDetail* run : photographed) add_rows(*run, figure);
+  if (figure.photographs.empty()) return unphotographed(std::move(figure), photographed);
+  const RunDetail& first = *photographed.front();
+  if (figure.photographs.size() > photographed.size()) {
+    figure.caption += fmt::format(
+        " The {} is each camera's frame whose sensor stamp is nearest to that of its {}.",
+        other_of(first.stream), to_text(first.stream));
+  } else {
+    add_lack(figure, {.what = fmt::format("{} frames", other_of(first.stream)),
+                      .scenario = "18cam_6host_90fps_full_slave",
+                      .was_recorded = false});
+  }
   return figure;
 }
 

@@ -19,7 +19,8 @@ Figure synchronisation(std::span<const evaluation::RunDetail> runs);
 // Fig. 11 to 13: a millisecond clock on a 120 Hz display as six cameras see it, in the frames that
 // a pipeline takes for simultaneous: those whose global stamps are nearest to that of the master's
 // first camera at a pulse in the middle of the capture. The display shows a new reading every 1/120
-// s, so frames that differ by less may look alike.
+// s, so frames that differ by less may look alike. Where there are depth and colour, each pipeline
+// has a row for each; runs of several sync modes stand together by mode.
 Figure digital_clocks(std::span<const evaluation::RunDetail> runs);
 
 // Both, in this order.

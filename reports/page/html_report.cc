@@ -215,13 +215,19 @@ std::string html_report(const ReportInput& input) {
   SIMBENCH_ASSERT(!input.archives.empty(), "a report is of at least one archive");
   std::string parts;
   std::vector<std::string> data;
-  for (std::size_t i = 0; i < input.archives.size(); ++i) {
-    parts += html_article(article_of(input.archives[i], i, input));
-    data.push_back(figures_json(input.archives[i].figures));
+  if (input.front) {
+    parts += html_article(input.front->article);
+    data.push_back(figures_json(input.front->figures));
+  } else {
+    parts += html(archive_blocks(input.archives));
   }
-  return html_page({.title = title_of(input),
-                    .subtitle = subtitle_of(input),
-                    .main = html(archive_blocks(input.archives)) + parts,
+  for (const ReportedArchive& reported : input.archives) {
+    parts += html_article(article_of(reported, data.size(), input));
+    data.push_back(figures_json(reported.figures));
+  }
+  return html_page({.title = input.front ? input.front->title : title_of(input),
+                    .subtitle = input.front ? input.front->subtitle : subtitle_of(input),
+                    .main = parts,
                     .data = data});
 }
 

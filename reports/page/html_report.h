@@ -14,11 +14,13 @@
 //   file << html_report(input);
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
+#include "reports/page/html_page.h"
 #include "reports/text/answer_text.h"
 
 namespace simbench::reports {
@@ -30,9 +32,18 @@ struct ReportedArchive {
   AnswerText answer{};               // empty: none
 };
 
+// What a page about several archives begins with: an article of all of them.
+struct ReportFront {
+  HtmlArticle article;
+  std::vector<Figure> figures{};
+  std::string title;
+  std::string subtitle;
+};
+
 struct ReportInput {
   std::vector<ReportedArchive> archives;  // at least one
   std::vector<std::string> command;       // argv of the report
+  std::optional<ReportFront> front{};     // nothing: a comparison of the archives, if several
 };
 
 std::string html_report(const ReportInput& input);

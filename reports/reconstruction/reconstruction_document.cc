@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
 
@@ -259,6 +260,9 @@ Block conclusions(const ReconstructionResults& results) {
   Block block;
   if (const auto ratio = published_ratio(results.rows)) {
     block.prose.push_back(ratio_sentence(*ratio));
+    if (results.scenario.draws_load()) {
+      block.prose.push_back(fmt::format("But {}.", kOwnLoad));
+    }
   }
   if (results.speed_needed) block.prose.push_back(speed_sentence(*results.speed_needed));
   return block;

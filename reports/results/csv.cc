@@ -90,6 +90,15 @@ std::string figures_cell(const evaluation::Results& results, const Row& row) {
   return csv_cell(fmt::format("{}", fmt::join(figures, "; ")));
 }
 
+// The cells of hosts.csv from t_l_ms on, with commas between them.
+std::string session_cells(const SeedScore& seed, std::size_t host) {
+  const auto found = std::ranges::find(seed.sessions, host, &SessionDelays::slave);
+  if (found == seed.sessions.end()) return ",,,,,";
+  return fmt::format("{},{},{},{},{},{}", csv_cell(to_ms(found->t_l)), csv_cell(to_ms(found->t_t)),
+                     csv_cell(to_ms(found->t_d)), found->pass, csv_cell(to_ms(found->get)),
+                     csv_cell(to_ms(found->set)));
+}
+
 bool synchronised(const SeedScore& seed, std::size_t host) {
   return std::none_of(seed.failures.begin(), seed.failures.end(),
                       [host](const SyncOutcome& failure) { return failure.slave == host; });
@@ -171,13 +180,13 @@ void write_frames_csv(const evaluation::Results& results, std::ostream& out) {
 
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out) {
   const LineEnds ends(results.derivation);
-  out << "pipeline,seed,host,host_error_ms,synchronised" << ends.header;
+  out << kHostsHeader << ends.header;
   for (const Row& row : results.rows) {
     for (const SeedScore& seed : row.seeds) {
       for (std::size_t host = 0; host < seed.host_errors_ms.size(); ++host) {
-        out << fmt::format("{},{},{},{},{}{}", csv_cell(row.pipeline), seed.seed, host,
+        out << fmt::format("{},{},{},{},{},{}{}", csv_cell(row.pipeline), seed.seed, host,
                            csv_cell(seed.host_errors_ms[host]), flag(synchronised(seed, host)),
-                           ends.line);
+                           session_cells(seed, host), ends.line);
       }
     }
   }

@@ -4,6 +4,7 @@
 
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include "evaluation/scoring/results.h"
 #include "scenarios/derivation.h"
@@ -29,7 +30,11 @@ std::string tidy_csv(const evaluation::Results& results);
 // and RMDV; needs EvaluationOptions::keep_pulses.
 void write_frames_csv(const evaluation::Results& results, std::ostream& out);
 
-// hosts.csv: pipeline,seed,host,host_error_ms,synchronised (1 or 0), and changed as above.
+// hosts.csv: these columns, synchronised being 1 or 0, and changed as above. From t_l_ms on: what
+// the slave measured and added in the last pass of its session; empty where there is none.
+inline constexpr std::string_view kHostsHeader =
+    "pipeline,seed,host,host_error_ms,synchronised,t_l_ms,t_t_ms,t_d_ms,session_passes,"
+    "get_time_ms,set_time_ms";
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
 
 // The end of a header and of each line of a CSV: of a changed world with a last column, as above.

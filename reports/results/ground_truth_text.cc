@@ -53,6 +53,12 @@ bool has_real_rows(const Results& results) {
                      [](const Row& row) { return row.ground_truth != GroundTruth::kSimulation; });
 }
 
+std::string shared_worlds(const Results& results) {
+  if (has_real_rows(results)) return "Every repetition of a pipeline is a capture of its own.";
+  if (!results.draws_load) return "Every pipeline meets the same worlds, one per seed.";
+  return fmt::format("Every pipeline meets the same worlds, one per seed, but {}.", kOwnLoad);
+}
+
 std::string unverified_legend(const Results& results) {
   if (std::none_of(results.rows.begin(), results.rows.end(), is_unverified)) return "";
   return "unverified: it is unknown which frames belong together, so AMD and RMDV are over the "

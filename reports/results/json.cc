@@ -152,6 +152,7 @@ std::string json(const evaluation::Results& results) {
   Json root = new_document(kArchiveSchemaVersion);
   root["scenario"] = results.scenario;
   state_derivation(results.derivation, root);
+  if (results.draws_load) root[kOwnLoadMember] = true;
   root.update({{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
                {"rows", Json::array()},
                {"claims", Json::array()},

@@ -7,6 +7,9 @@
 //
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
 //    "based_on", "changed", "published_left_out": see state_derivation(),
+//    "own_load_of_pipelines": true, only if the scenario draws the load of hosts and network for
+//    each
+//      pipeline: in that part rows of one seed are not of one world,
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
 //              "capture_alignment": what steers the exposures, only if something does,
@@ -41,6 +44,7 @@ namespace simbench::reports {
 
 // The schema of manifest.json and results.json: the written one, and the newest that can be read.
 inline constexpr int kArchiveSchemaVersion = 1;
+inline constexpr const char* kOwnLoadMember = "own_load_of_pipelines";
 
 // Whether a value at this percentile is inside; null with too few seeds to tell.
 Json inside_json(const evaluation::Percentile& percentile);

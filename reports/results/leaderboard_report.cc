@@ -104,8 +104,7 @@ std::string order_legend(const Results& results) {
       "its place, and to the paper's proposal. packets per s: messages that all hosts sent, from "
       "the start of host synchronisation to the end of the capture. {} Online stamps a frame when "
       "it arrives; offline needs the whole recording.",
-      has_real_rows(results) ? "Every repetition of a pipeline is a capture of its own."
-                             : "Every pipeline meets the same worlds.");
+      shared_worlds(results));
 }
 
 Json ranks_json(const std::vector<Rank>& ranks) {

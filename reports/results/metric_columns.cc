@@ -130,6 +130,38 @@ constexpr MetricColumn kCaptureColumns[] = {
      .legend = "wrong locks: cameras reported as aligned that expose more than a tenth of a period "
                "beside the reference camera.",
      .legend_continues = true},
+    {.id = "t_l_ms",
+     .tables = {.sessions = 1},
+     .heading = "t_l\nmedian",
+     .band_heading = "t_l\n5-95 %",
+     .legend =
+         "t_l, t_t: network and time delay as the slaves measured them in the last pass of "
+         "their sessions (t_t: half of a get and a set of the clock), means over the slaves;"},
+    {.id = "t_t_ms",
+     .tables = {.sessions = 2},
+     .heading = "t_t\nmedian",
+     .band_heading = "t_t\n5-95 %"},
+    {.id = "t_d_ms",
+     .tables = {.sessions = 3},
+     .heading = "t_d\nmedian",
+     .legend = "t_d: what they added of the two.",
+     .legend_continues = true},
+    {.id = "get_time_ms",
+     .tables = {.sessions = 4},
+     .heading = "get",
+     .legend = "get, set: a call of the slave that reads, that sets its clock."},
+    {.id = "set_time_ms", .tables = {.sessions = 5}, .heading = "set"},
+    {.id = "message_time_ms",
+     .tables = {.sessions = 6},
+     .heading = "message",
+     .legend = "message: sending and receiving one, half of what the last exchange's round trip "
+               "took beside a get and a set.",
+     .legend_continues = true},
+    {.id = "session_passes",
+     .tables = {.sessions = 7},
+     .heading = "passes",
+     .legend = "passes: of the loop of T_th.",
+     .legend_continues = true},
 };
 
 constexpr MetricColumn kClockColumns[] = {

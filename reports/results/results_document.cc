@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "evaluation/scoring/rows.h"
+#include "recording/counted.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/metric_columns.h"
 #include "reports/text/metric_text.h"
@@ -94,12 +95,16 @@ Table paper_table(const Results& results) {
 }
 
 // A line per pipeline with the metrics that name the table.
-Table table_of_metrics(const Results& results, int TablePlaces::*table) {
+Table table_of_metrics(const std::vector<const Row*>& rows, int TablePlaces::*table) {
   const auto metrics = table_metrics(table);
   RowFields fields = {pipeline_field<Row>()};
-  append(fields, scored_seeds_field(pointers_to(results.rows), metrics));
+  append(fields, scored_seeds_field(rows, metrics));
   for (const Metric* metric : metrics) append(fields, metric_fields(*metric));
-  return table_of(fields, results.rows);
+  return table_of(fields, rows);
+}
+
+Table table_of_metrics(const Results& results, int TablePlaces::*table) {
+  return table_of_metrics(pointers_to(results.rows), table);
 }
 
 // Whether there are slaves and true time.
@@ -109,14 +114,20 @@ bool has_time_errors(const Results& results) {
   });
 }
 
-// Whether a row is of exposures that may be steered.
-bool has_alignment(const Results& results) {
-  const auto metrics = table_metrics(&TablePlaces::alignment);
-  return std::ranges::any_of(results.rows, [&metrics](const Row& row) {
-    return std::ranges::any_of(metrics, [&row](const Metric* metric) {
-      return evaluation::scored_seeds(row, *metric) > 0;
+// The rows that have a value of a table's metrics.
+std::vector<const Row*> rows_with(const Results& results, int TablePlaces::*table) {
+  std::vector<const Row*> rows = pointers_to(results.rows);
+  std::erase_if(rows, [metrics = table_metrics(table)](const Row* row) {
+    return std::ranges::none_of(metrics, [row](const Metric* metric) {
+      return evaluation::scored_seeds(*row, *metric) > 0;
     });
   });
+  return rows;
+}
+
+// Whether a row is of exposures that may be steered.
+bool has_alignment(const Results& results) {
+  return !rows_with(results, &TablePlaces::alignment).empty();
 }
 
 // Adds the legends of a table's metrics.
@@ -142,11 +153,8 @@ bool gatherings_differ(const Results& results) {
 // The meaning of the columns, line by line.
 std::vector<std::string> results_legend(const Results& results) {
   std::vector<std::string> lines = {
-      has_real_rows(results)
-          ? "Every repetition of a pipeline is a capture of its own. A value is the median over "
-            "the repetitions, [a, b] their band from 5 to 95 %."
-          : "Every pipeline meets the same worlds, one per seed. A value is the median over the "
-            "seeds, [a, b] their band from 5 to 95 %."};
+      fmt::format("{} A value is the median over the {}, [a, b] their band from 5 to 95 %.",
+                  shared_worlds(results), has_real_rows(results) ? "repetitions" : "seeds")};
   const auto lacks_seeds = [&results](int TablePlaces::*table) {
     return !scored_seeds_field(pointers_to(results.rows), table_metrics(table)).empty();
   };
@@ -158,6 +166,9 @@ std::vector<std::string> results_legend(const Results& results) {
   append_legends(&TablePlaces::truth, lines);
   if (has_time_errors(results)) append_legends(&TablePlaces::time_errors, lines);
   if (has_alignment(results)) append_legends(&TablePlaces::alignment, lines);
+  if (!rows_with(results, &TablePlaces::sessions).empty()) {
+    append_legends(&TablePlaces::sessions, lines);
+  }
   if (std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera)) {
     lines.emplace_back(kSingleCameraLegend);
   }
@@ -330,6 +341,9 @@ Document results_document(const Results& results, const std::string& summary) {
   Document document{.title = results_title(results), .head = results_head(results, summary)};
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
+  if (const std::string published = published_amd_text(results); !published.empty()) {
+    blocks.back().prose.push_back(published);
+  }
   blocks.push_back({.heading = "Metrics that need true time",
                     .table = table_of_metrics(results, &TablePlaces::truth)});
   if (has_time_errors(results)) {
@@ -337,6 +351,10 @@ Document results_document(const Results& results, const std::string& summary) {
                       .table = table_of_metrics(results, &TablePlaces::time_errors)});
   }
   add(alignment_block(results), blocks);
+  if (const auto rows = rows_with(results, &TablePlaces::sessions); !rows.empty()) {
+    blocks.push_back({.heading = "Delays of the sessions of Algorithms 1 and 2",
+                      .table = table_of_metrics(rows, &TablePlaces::sessions)});
+  }
   add(published_figures_block(results), blocks);
   add(program_gap_block(results), blocks);
   if (gatherings_differ(results)) {

@@ -2,7 +2,8 @@
 //
 // A block each, with a row per pipeline: the paper's metrics beside the published values, and the
 // metrics that need true time; others about the hosts' time errors, the alignment of exposures that
-// are steered, and the gathered sets if the pipelines gather in different ways. The columns are
+// are steered, the delays of sessions of Algorithms 1 and 2, and the gathered sets if the pipelines
+// gather in different ways. The columns are
 // those of reports/results/metric_columns.h that name the table. Rows of real rigs state their
 // ground truth; those without any are "unverified" (evaluation/scoring/unverified_scores.h). Then
 // follow failures, a legend for newcomers, the paper's claims with the fraction of seeds in which
@@ -54,6 +55,18 @@ std::vector<const evaluation::Row*> pointers_to(const std::vector<evaluation::Ro
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
 // The meaning of its columns.
 std::vector<std::string> sets_legend(const evaluation::Results& results);
+
+// Where the published AMD values lie among the seeds: "Published AMD, by its percentile [95 %
+// interval]: 3 of 4 inside (yoon2021_both at 25 % [11-43], ...); 32 seeds cannot place
+// yoon2021_network at 94 % [79-99]."; "" without published values. Nothing but the percentiles of
+// these seeds decides what it says.
+std::string published_amd_text(const evaluation::Results& results);
+struct PublishedAmdCount {
+  std::size_t all = 0;
+  std::size_t inside = 0;
+  std::size_t outside = 0;  // the seeds are too few to place the others
+};
+PublishedAmdCount published_amd_count(const evaluation::Results& results);
 
 // Published figures of any metric beside the seeds (evaluation/scoring/published_figures.h), in the
 // scenario's order, one entry for each whose pipeline has a row; nothing without figures. The block

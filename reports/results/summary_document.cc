@@ -139,14 +139,15 @@ Block board_block(const Results& results, const Board& board) {
 
 std::vector<std::string> summary_legend(const Results& results) {
   std::vector<std::string> lines = {
-      "Medians over the seeds, one world each for all pipelines, with the band from 5 to 95 %. "
-      "AMD: range of the stamps of a pulse over all cameras. Absolute error: against the true "
+      "Medians over the seeds, with the band from 5 to 95 %. " + shared_worlds(results) +
+      " AMD: range of the stamps of a pulse over all cameras. Absolute error: against the true "
       "mid-exposure. Host clock error: slaves against the master. precision: sets of one pulse "
       "only; recall: pulses found whole."};
   if (std::ranges::any_of(results.rows, evaluation::has_single_camera)) {
     lines.emplace_back(kSingleCameraLegend);
   }
-  for (const std::string& line : {unverified_legend(results), asymmetry_line(results)}) {
+  for (const std::string& line :
+       {published_amd_text(results), unverified_legend(results), asymmetry_line(results)}) {
     if (!line.empty()) lines.push_back(line);
   }
   return lines;

@@ -7,6 +7,7 @@
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/sweep/ranking.h"
 #include "reports/figures/figure_parts.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/results/metric_columns.h"
 #include "reports/sweep/sweep_parts.h"
 #include "reports/sweep/sweep_report.h"
@@ -84,6 +85,7 @@ Block ranking_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows)
       .table = std::move(table),
       .prose = {"a < b: a is better than b; a ~ b: their differences, paired by seed, may be "
                 "chance (t-tests of logarithms, 5 % for all pairs and points together)."}};
+  if (plan.draws_load) block.prose.push_back(fmt::format("But {}.", kOwnLoad));
   if (ranking.flips.empty()) {
     block.prose.emplace_back("No two pipelines change places within these values.");
   }

@@ -231,7 +231,11 @@ std::ostream& OutputFolder::file(const std::string& name) {
   finish_file();
   SIMBENCH_ASSERT(temporary_.has_value(), "a published folder gets no more files");
   open_name_ = temporary_->path() / name;
-  temporary_->change([&] { open_.open(open_name_, std::ios::binary); });
+  temporary_->change([&] {
+    std::error_code error;
+    fs::create_directories(open_name_.parent_path(), error);
+    open_.open(open_name_, std::ios::binary);
+  });
   if (!open_) fail_output(folder_, fmt::format("cannot write {}: {}", name, system_reason()));
   return open_;
 }

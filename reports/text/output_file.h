@@ -86,7 +86,8 @@ class OutputFolder {
   explicit OutputFolder(const std::filesystem::path& folder,
                         const std::vector<std::string>& more_own_files = {});
 
-  // Finishes the preceding file and starts the next: at most one is open.
+  // Finishes the preceding file and starts the next: at most one is open. A name such as
+  // "45fps/results.json" makes that folder in it, which is one of `more_own_files`.
   std::ostream& file(const std::string& name);
   // Finishes the last file and gives the folder its name.
   void publish();

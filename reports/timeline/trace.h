@@ -1,5 +1,5 @@
-// The events of one simulated run for a timeline: pulses, the way of every frame, messages, clocks
-// and gathered sets, in order of true time.
+// The events of one simulated run for a timeline: pulses, the way of every frame, messages,
+// sessions of Algorithms 1 and 2, clocks and gathered sets, in order of true time.
 //
 // TraceRecorder (trace_recorder.h) makes a trace; write_chrome_trace() and write_trace_csv() write
 // it. Its size is bounded: it omits things that begin outside the window, and those that begin
@@ -64,6 +64,15 @@ struct TraceAdjustment {
   double rate_ppb = 0;
 };
 
+// A session of Algorithms 1 and 2 at its slave: from the first READY of a pass that it finished
+// until it has set its clock for the last time. Its times are as accurate as an adjustment's.
+struct TraceSession {
+  TrueTime at{};
+  TrueTime end{};
+  SteadyTime begin_steady{};
+  SessionDelays last;  // of its last pass
+};
+
 // Numbers of events.
 struct TraceLeftOut {
   std::uint64_t outside = 0;   // of the window
@@ -87,6 +96,7 @@ struct Trace {
   std::vector<ObservedMessage> messages;
   std::vector<TraceClock> clocks;
   std::vector<TraceAdjustment> adjustments;
+  std::vector<TraceSession> sessions;
   std::vector<TraceSet> sets;
 
   TraceOptions options;
@@ -99,6 +109,7 @@ inline TrueTime begin_of(const TraceFrame& frame) { return frame.way.exposure_st
 inline TrueTime begin_of(const ObservedMessage& message) { return message.left; }
 inline TrueTime begin_of(const TraceClock& clock) { return clock.at; }
 inline TrueTime begin_of(const TraceAdjustment& adjustment) { return adjustment.at; }
+inline TrueTime begin_of(const TraceSession& session) { return session.at; }
 
 inline std::uint64_t events_of(const ObservedPulse&) { return 1; }
 inline std::uint64_t events_of(const TraceFrame& frame) {
@@ -108,6 +119,7 @@ inline std::uint64_t events_of(const TraceFrame& frame) {
 inline std::uint64_t events_of(const ObservedMessage&) { return 4; }
 inline std::uint64_t events_of(const TraceClock&) { return 1; }
 inline std::uint64_t events_of(const TraceAdjustment&) { return 1; }
+inline std::uint64_t events_of(const TraceSession&) { return 1; }
 
 // Returns a sentence for each reason why something was left out.
 std::vector<std::string> left_out_notes(const Trace& trace);

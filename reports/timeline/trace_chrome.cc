@@ -137,11 +137,20 @@ class ChromeWriter {
     } else if (event.what == TraceWhat::kClock) {
       add(R"(,"cat":"clock","name":"clock error, TE","args":{{"us":{:.3f}}})",
           us(trace_.clocks[event.subject].error));
+    } else if (event.what == TraceWhat::kSession) {
+      write_session(trace_.sessions[event.subject].last);
     } else {
       const TraceAdjustment& adjustment = trace_.adjustments[event.subject];
       add(R"(,"cat":"clock","name":"{}","args":{{"step_us":{:.3f},"rate_ppb":{}}})",
           adjustment.step.count() != 0 ? "step" : "rate", us(adjustment.step), adjustment.rate_ppb);
     }
+  }
+
+  void write_session(const SessionDelays& last) {
+    add(R"(,"cat":"session","name":"session","args":{{"passes":{},"t_l_ms":{:.6f})", last.pass,
+        to_ms(last.t_l));
+    add(R"(,"t_t_ms":{:.6f},"t_d_ms":{:.6f})", to_ms(last.t_t), to_ms(last.t_d));
+    add(R"(,"get_ms":{:.6f},"set_ms":{:.6f}}})", to_ms(last.get), to_ms(last.set));
   }
 
   Json other_data() const {

@@ -18,6 +18,7 @@ constexpr Nanoseconds kLongestAnswer = std::chrono::milliseconds(50);
 enum class TrackKind : std::uint8_t {
   kTrigger,
   kClock,
+  kSession,
   kGathering,
   kExposure,
   kUsb,
@@ -45,6 +46,8 @@ std::string track_name(const TrackKey& key) {
       return "pulses";
     case TrackKind::kClock:
       return "clock";
+    case TrackKind::kSession:
+      return "session";
     case TrackKind::kGathering:
       return "gathering";
     case TrackKind::kExposure:
@@ -225,6 +228,11 @@ class TimelineBuilder {
     for (std::uint32_t i = 0; i < trace_.frames.size(); ++i) add_frame(i);
     add_messages();
     add_clocks();
+    for (std::uint32_t i = 0; i < trace_.sessions.size(); ++i) {
+      const TraceSession& session = trace_.sessions[i];
+      tracks_.slice(host_track(session.last.slave, TrackKind::kSession), TraceWhat::kSession, i,
+                    session.at, session.end);
+    }
     TraceTimeline timeline = tracks_.lay_out();
     timeline.processes.emplace_back("trigger");
     for (std::uint32_t host = 0; host < trace_.hosts; ++host) {

@@ -2,9 +2,10 @@
 //
 // Processes: the trigger (pid 1), then the hosts in order (pid 2 is the master). Tracks are the
 // threads of the Chrome trace format. Slices on a track never overlap: an overlapping one goes to a
-// further track of the same name, "(2)". Per host: clock; gathering (shown at the master); for each
-// stream of a camera exposure, usb (offered to the bus -> transferred) and host stack (copied to
-// the kernel -> delivered); a channel for each peer, with the messages to and from it.
+// further track of the same name, "(2)". Per host: clock; the session of a slave, with its delays;
+// gathering (shown at the master); for each stream of a camera exposure, usb (offered to the bus ->
+// transferred) and host stack (copied to the kernel -> delivered); a channel for each peer, with
+// the messages to and from it.
 //
 // Arrows: trigger pulse -> exposure -> host stack -> gathered set for each frame, as far as it got;
 // along the messages of a link as long as each answers the preceding one within 50 ms.
@@ -55,6 +56,7 @@ enum class TraceWhat : std::uint8_t {
   kMessageArrow,
   kClock,       // clocks
   kAdjustment,  // adjustments
+  kSession,     // sessions
 };
 
 struct TraceEvent {

@@ -58,6 +58,7 @@ void TraceRecorder::add(const FrameRecord& frame, const FrameTruth& truth) {
 void TraceRecorder::on_event(const RecordingEvent& event) {
   ForwardingSink::on_event(event);
   if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) add(*adjustment);
+  if (const auto* delays = std::get_if<SessionDelays>(&event)) add(*delays);
 }
 
 void TraceRecorder::add(const ClockAdjustment& adjustment) {
@@ -76,6 +77,21 @@ void TraceRecorder::add(const ClockAdjustment& adjustment) {
                                 .at_steady = adjustment.at,
                                 .step = adjustment.after - adjustment.before,
                                 .rate_ppb = adjustment.rate_ppb});
+}
+
+void TraceRecorder::add(const SessionDelays& delays) {
+  const auto open = std::ranges::find_if(trace_.sessions, [&](const TraceSession& session) {
+    return session.last.slave == delays.slave && session.last.pass < delays.pass;
+  });
+  if (open != trace_.sessions.end()) {
+    open->last = delays;
+  } else if (last_seen_ >= trace_.left_out.cut_at) {
+    ++trace_.left_out.too_many;
+  } else {
+    ++kept_events_;
+    trace_.sessions.push_back(
+        {.at = last_seen_, .end = {}, .begin_steady = delays.begin, .last = delays});
+  }
 }
 
 Nanoseconds TraceRecorder::clock_interval() const { return kClockInterval; }
@@ -154,6 +170,7 @@ void TraceRecorder::for_each_list(const Function& function) {
   function(trace_.messages);
   function(trace_.clocks);
   function(trace_.adjustments);
+  function(trace_.sessions);
 }
 
 void TraceRecorder::cut_to_limit() {
@@ -183,6 +200,7 @@ void TraceRecorder::cut_at(TrueTime instant) {
 
 Trace TraceRecorder::finish() {
   resolve_adjustments();
+  resolve_sessions();
   sort_by_begin();
   index_frames();
   mark_leaders();
@@ -228,13 +246,29 @@ TrueTime TraceRecorder::true_time(std::uint32_t host, SteadyTime at) const {
   return before.at + Nanoseconds(std::llround(static_cast<double>(since.count()) * rate));
 }
 
-void TraceRecorder::resolve_adjustments() {
-  std::erase_if(trace_.adjustments, [this](TraceAdjustment& adjustment) {
-    adjustment.at = true_time(adjustment.host, adjustment.at_steady);
-    const bool wanted = adjustment.at >= trace_.options.from && adjustment.at < trace_.options.to;
-    if (!wanted) ++trace_.left_out.outside;
+template <class Thing>
+void TraceRecorder::keep_window(std::vector<Thing>& list) {
+  std::erase_if(list, [this](const Thing& thing) {
+    const TrueTime begin = begin_of(thing);
+    const bool wanted = begin >= trace_.options.from && begin < trace_.options.to;
+    if (!wanted) trace_.left_out.outside += events_of(thing);
     return !wanted;
   });
+}
+
+void TraceRecorder::resolve_adjustments() {
+  for (TraceAdjustment& adjustment : trace_.adjustments) {
+    adjustment.at = true_time(adjustment.host, adjustment.at_steady);
+  }
+  keep_window(trace_.adjustments);
+}
+
+void TraceRecorder::resolve_sessions() {
+  for (TraceSession& session : trace_.sessions) {
+    session.at = true_time(session.last.slave, session.begin_steady);
+    session.end = true_time(session.last.slave, session.last.end);
+  }
+  keep_window(trace_.sessions);
 }
 
 void TraceRecorder::index_frames() {

@@ -82,6 +82,7 @@ class TraceRecorder final : public ForwardingSink,
 
   void add(const FrameRecord& frame, const FrameTruth& truth);
   void add(const ClockAdjustment& adjustment);
+  void add(const SessionDelays& delays);
   template <class Thing>
   void take(std::vector<Thing>& list, Thing thing);
   template <class Function>
@@ -91,6 +92,10 @@ class TraceRecorder final : public ForwardingSink,
   void cut_at(TrueTime instant);
 
   void resolve_adjustments();
+  void resolve_sessions();
+  // Removes what begins outside the window.
+  template <class Thing>
+  void keep_window(std::vector<Thing>& list);
   TrueTime true_time(std::uint32_t host, SteadyTime at) const;
   void sort_by_begin();
   void index_frames();

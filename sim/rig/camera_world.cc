@@ -300,9 +300,12 @@ bool CameraWorld::is_each_stream_once(const std::vector<Step>& offers) {
 auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before)
     -> std::vector<Step>::iterator {
   for (; next != bus.offers.end() && next->at < before; ++next) {
-    const double transfer_ns = transfer_ns_of_kind_[next->place % transfer_ns_of_kind_.size()];
-    const TrueTime done(bus.controller.pass(next->at.time_since_epoch(), next->place, transfer_ns,
-                                            before.time_since_epoch()));
+    const std::size_t kind = next->place % transfer_ns_of_kind_.size();
+    const Nanoseconds at = next->at.time_since_epoch();
+    const Nanoseconds latest = cameras_.stream(static_cast<std::uint32_t>(kind)).latest(at);
+    const TrueTime done(
+        bus.controller.pass(at, next->place, transfer_ns_of_kind_[kind],
+                            std::min(before.time_since_epoch() - Nanoseconds(1), latest)));
     if (done == TrueTime::max()) break;
     transferred_.push_back(step(done, done, next->frame));
   }
@@ -313,7 +316,10 @@ void CameraWorld::offer(Bus& bus, const Step& offer) {
   SimFrame& frame = frames_[offer.frame].frame;
   const SimStream& stream = cameras_.stream(frame.stream);
   const Nanoseconds at = offer.at.time_since_epoch();
-  if (bus.controller.submit(at, stream.index_on_controller, stream.bytes, offer.frame)) return;
+  if (bus.controller.submit(at, stream.index_on_controller, stream.bytes, offer.frame,
+                            stream.latest(at))) {
+    return;
+  }
   frame.fate = FrameFate::kLostOnUsb;
   ended_.push_back(step(offer.at, offer.at, offer.frame));
 }

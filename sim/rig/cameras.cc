@@ -14,6 +14,12 @@ namespace {
 // 1 MB/s is 1e6 bytes in 1e9 ns.
 double bytes_per_ns(const scenarios::Usb& usb) { return usb.bandwidth_mb_per_s * 1e-3; }
 
+// How long a camera can hold a frame that its controller does not take.
+Nanoseconds hold_time(const scenarios::Usb& usb, const scenarios::Stream& stream) {
+  if (usb.hold_mode_periods == 0) return Nanoseconds::max();
+  return from_ms(usb.hold_mode_periods * 1e3 / stream.mode_rate_hz);
+}
+
 ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Stream& stream) {
   if (!cameras.follows_trigger(stream)) return ShutterMode::kFreeRunning;
   return cameras.sync_mode == scenarios::SyncMode::kGenlock ? ShutterMode::kGenlock
@@ -151,6 +157,7 @@ SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
                                 profile.latency_mode_periods * 1e3 / profile.mode_rate_hz +
                                 latency.uniform(0, scenario_.cameras.latency_camera_max_ms) +
                                 of_model.normal(error.delay_error_sigma_ms))),
+          .hold = hold_time(scenario_.usb, profile),
           .readout = shutter.readout,
           .late_ns = of_camera.normal(error.camera_delay_error_sigma_ms) * 1e6,
           .started = started,

@@ -47,6 +47,7 @@ struct SimStream {
   double bytes;         // of a frame
   double transfer_ns;   // of a frame that is alone on the bus
   Nanoseconds latency;  // from the end of the exposure to the offer to the bus
+  Nanoseconds hold;     // so long after its offer a frame may be transferred
   Nanoseconds readout;  // of a rolling shutter
   double late_ns;       // delivered later than a camera of the model is (may be negative)
   TrueTime started;     // to stream
@@ -59,6 +60,10 @@ struct SimStream {
   TrueTime last_arrival = TrueTime::min();
   std::uint32_t counter = 0;  // of the next frame
 
+  // When a frame that is offered then must be through; Nanoseconds::max(): any time.
+  Nanoseconds latest(Nanoseconds offered) const {
+    return hold == Nanoseconds::max() ? hold : offered + hold;
+  }
   bool runs_free() const { return sensor || shutter.mode() == ShutterMode::kFreeRunning; }
   // When it exposes without a pulse, or looks whether it should.
   TrueTime next_timer() const { return sensor ? sensor->next_exposure() : shutter.next_timer(); }

@@ -115,7 +115,7 @@ TEST(FigureSourceTest, ARepeatedRunThatDiffersIsLeftOutAndSaidSo) {
 TEST(FigureSourceTest, FiguresComeInTheOrderOfTheCatalogue) {
   Archive archive = archive_of(short_scenario(), 1);
   const ArchiveFigures made = archive_figures(
-      archive, {.pipelines = {"oracle"}, .figures = {"fig5", "synchronisation", "fig9"}});
+      archive, {.pipelines = {"oracle"}, .figures = {"fig5", "synchronisation", "frame_errors"}});
   ASSERT_THAT(made.figures, SizeIs(3));
   EXPECT_EQ(made.figures[0].id, "frame_errors");
   EXPECT_EQ(made.figures[1].id, "synchronisation");

@@ -65,6 +65,7 @@ class Folder {
         sink.on_event(simbench::SyncOutcome{});
         sink.on_event(simbench::AlignmentReport{});
         sink.on_event(simbench::LedSighting{});
+        sink.on_event(simbench::SessionDelays{});
       }
       if (seed == 1) {
         writer.end({});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <utility>
 #include <vector>
@@ -92,6 +93,57 @@ TEST(UsbController, LosesWhatAStreamCannotBuffer) {
   EXPECT_TRUE(bus.submit(Nanoseconds(0), 1, 100, 3));
   EXPECT_EQ(bus.take_completed(Nanoseconds(100)), 0u);
   EXPECT_TRUE(bus.submit(Nanoseconds(100), 0, 100, 4));
+}
+
+TEST(UsbController, AFrameThatWouldBeTooLateIsRefusedAndTakesNoBandwidth) {
+  for (const UsbSettings& settings : {kFifo, kFair}) {
+    UsbController bus(settings, 8);
+    EXPECT_TRUE(bus.submit(Nanoseconds(0), 0, 300, 0, Nanoseconds(300)));
+    EXPECT_FALSE(bus.submit(Nanoseconds(10), 1, 301, 1, Nanoseconds(600)));
+    EXPECT_TRUE(bus.submit(Nanoseconds(10), 1, 300, 2, Nanoseconds(600)));
+    EXPECT_TRUE(bus.submit(Nanoseconds(10), 2, 900, 3)) << "any time will do";
+    EXPECT_TRUE(bus.submit(Nanoseconds(1600), 3, 50, 4, Nanoseconds(1650))) << "idle by then";
+  }
+}
+
+TEST(UsbController, ADedicatedCameraIsTooLateByItsOwnFramesAlone) {
+  UsbController bus(kDedicated, 8);
+  EXPECT_TRUE(bus.submit(Nanoseconds(0), 0, 300, 0, Nanoseconds(300)));
+  EXPECT_TRUE(bus.submit(Nanoseconds(0), 1, 300, 1, Nanoseconds(300)));
+  EXPECT_FALSE(bus.submit(Nanoseconds(0), 0, 300, 2, Nanoseconds(300)));
+}
+
+// Cameras at a rate of their own each, in all phases: the share that an endless overload loses, and
+// nothing below.
+TEST(UsbController, LosesWhatItsBandwidthCannotCarry) {
+  constexpr double kBytes = 1000;
+  constexpr std::int64_t kPeriodNs = 10'000;
+  constexpr int kPeriods = 4000;
+  for (const UsbSettings& sharing : {kFifo, kFair}) {
+    for (const double bytes_per_ns : {0.25, 0.4, 0.55, 0.599, 0.601, 1.0}) {
+      UsbSettings settings = sharing;
+      settings.bytes_per_ns = bytes_per_ns;
+      settings.buffered_frames = 4;
+      UsbController bus(settings, 8);
+      int lost = 0;
+      for (int i = 0; i < 6 * kPeriods; ++i) {
+        const Nanoseconds at(i * kPeriodNs / 6);
+        while (bus.next_completion() <= at) {
+          const Nanoseconds now = bus.next_completion();
+          while (bus.take_completed(now)) {
+          }
+        }
+        lost += bus.submit(at, static_cast<std::size_t>(i % 6), kBytes, 0) ? 0 : 1;
+      }
+      const double offered = 6 * kBytes / static_cast<double>(kPeriodNs);
+      const double expected = std::max(0.0, 1 - bytes_per_ns / offered);
+      EXPECT_NEAR(static_cast<double>(lost) / (6 * kPeriods), expected, 24.0 / (6 * kPeriods))
+          << bytes_per_ns << " of " << offered;
+      if (bytes_per_ns > offered) {
+        EXPECT_EQ(lost, 0);
+      }
+    }
+  }
 }
 
 // However it is shared, a bus that is never idle carries its bandwidth and not more.

@@ -110,6 +110,24 @@ class SameRuleTest(unittest.TestCase):
             self.assertEqual(own[score], built_in[score], score)
         self.assertGreater(own["sets"], 0)
 
+    def test_delays_of_a_session_are_metrics(self):
+        @simbench.host_sync("test_delays")
+        async def measures(host, settings):
+            begin = host.steady_ns
+            await host.clock.step(0)
+            for number in (1, 2):
+                host.report_delays(1e6 * host.id, 5e5, 3e6 * number, get_ns=1e3, set_ns=4e6,
+                                   pass_number=number, begin_steady_ns=begin)
+
+        result = scores(["test_delays+raw_arrival+yoon2021"], RIG, seeds=2)
+        self.assertEqual(values(result, "t_l_ms"), [[3, 3]])  # slaves 1 to 5
+        self.assertEqual(values(result, "t_t_ms"), [[0.5, 0.5]])
+        self.assertEqual(values(result, "t_d_ms"), [[6, 6]])
+        self.assertEqual(values(result, "session_passes"), [[2, 2]])
+        self.assertEqual(values(result, "get_time_ms"), [[0.001, 0.001]])
+        self.assertEqual(values(result, "set_time_ms"), [[4, 4]])
+        self.assertEqual(values(result, "message_time_ms"), [[None, None]])
+
     def test_host_sync_that_does_nothing_is_free_running(self):
         @simbench.host_sync("test_nothing")
         async def nothing(host, settings):
@@ -223,6 +241,14 @@ class CaptureAlignmentTest(unittest.TestCase):
 
         self.scores([refuse], seeds=1)
         self.assertEqual(sorted(refused), [False] * 18 + [True] * 18)
+
+    def test_delays_are_of_a_host_sync_alone(self, _):
+        @simbench.capture_alignment("test_delays_of_cameras")
+        async def reports(host, camera, settings):
+            host.report_delays(1, 2, 3)
+
+        with self.assertRaisesRegex(simbench.InputError, r"report_delays\(\): of a host_sync alone"):
+            self.scores([reports], seeds=1)
 
     def test_datagrams_go_beside_those_of_host_sync(self, _):
         heard = []

@@ -70,6 +70,16 @@ TEST(EventTextTest, TheOtherKinds) {
             "alignment,7,true,40,1.2 ms\\, late");
   EXPECT_EQ(to_line(LedSighting{7, {4294967295}, -1'000'000, 12'000'000}),
             "led,7,4294967295,-1000000,12000000");
+  EXPECT_EQ(to_line(SessionDelays{.slave = 2,
+                                  .pass = 3,
+                                  .begin = at<SteadyTime>(-1),
+                                  .end = at<SteadyTime>(9),
+                                  .t_l = Nanoseconds(4),
+                                  .t_t = Nanoseconds(-5),
+                                  .t_d = Nanoseconds(6),
+                                  .get = Nanoseconds(7),
+                                  .set = Nanoseconds(8)}),
+            "delays,2,3,-1,9,4,-5,6,7,8");
 }
 
 TEST(EventTextTest, ReadsBackWhateverWasWritten) {
@@ -130,7 +140,7 @@ TEST(EventTextTest, EveryPrefixOfALineIsSafe) {
 TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_EQ(line_error("fraem,1"),
             "column 1 (kind): found 'fraem', allowed: frame, pulse, adjustment, poll, exchange, "
-            "outcome, alignment, led");
+            "outcome, alignment, led, delays");
   EXPECT_EQ(line_error("poll,1x,2,3,4,5,6"),
             "column 2 (camera): found '1x', allowed: a whole number from 0 to 4294967295");
   EXPECT_EQ(line_error("poll,1,4294967296,3,4,5,6"),
@@ -147,6 +157,9 @@ TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_THAT(line_error("pulse,1,2,3;;4"), HasSubstr("column 4 (error_ns): found '3;;4'"));
   EXPECT_THAT(line_error("pulse,1,2,3;"), HasSubstr("column 4 (error_ns): found '3;'"));
   EXPECT_THAT(line_error("exchange,1,0,1,2,3"), HasSubstr("column 7 (t4_ns): missing"));
+  EXPECT_THAT(line_error("delays,1,1,0,0,1,2,3,4"), HasSubstr("column 10 (set_ns): missing"));
+  EXPECT_THAT(line_error("delays,1,1,0,0,1.5,2,3,4,5"),
+              HasSubstr("column 6 (t_l_ns): found '1.5', allowed: a whole number from"));
   EXPECT_THAT(line_error(""), HasSubstr("column 1 (kind): found ''"));
 }
 

@@ -148,6 +148,12 @@ struct Same {
     };
     return all(a) == all(b);
   }
+  bool operator()(const SessionDelays& a, const SessionDelays& b) const {
+    const auto all = [](const SessionDelays& d) {
+      return members(d.slave, d.pass, d.begin, d.end, d.t_l, d.t_t, d.t_d, d.get, d.set);
+    };
+    return all(a) == all(b);
+  }
   template <class A, class B>
   bool operator()(const A&, const B&) const {
     return false;
@@ -158,7 +164,7 @@ struct Same {
 
 KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
   const auto host = [&] { return any_number<std::uint32_t>(random) % bounds.hosts; };
-  switch (random() % 8) {
+  switch (random() % 9) {
     case 0: {
       PulseTruth event;
       event.pulse = any_number<std::int64_t>(random);
@@ -207,6 +213,17 @@ KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
                          {any_number<std::uint32_t>(random)},
                          any_number<std::int64_t>(random),
                          any_number<std::int64_t>(random)};
+    case 7: {
+      SessionDelays event;
+      event.slave = host();
+      event.pass = any_number<std::uint32_t>(random);
+      set_any(event.begin, random);
+      set_any(event.end, random);
+      for (Nanoseconds* delay : {&event.t_l, &event.t_t, &event.t_d, &event.get, &event.set}) {
+        *delay = Nanoseconds(any_number<std::int64_t>(random));
+      }
+      return event;
+    }
     default:
       return any_frame(random, bounds.cameras);
   }

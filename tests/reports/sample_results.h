@@ -36,6 +36,32 @@ inline void set_unsteered(evaluation::Row& row) {
   row.disturbed_frames = row.exposure_drift_ppm = row.wrong_locks = no_series();
 }
 
+// Makes it the row of a host synchronisation without sessions that have delays.
+inline void set_without_sessions(evaluation::Row& row) {
+  row.t_l_ms = row.t_t_ms = row.t_d_ms = row.session_passes = no_series();
+  row.get_time_ms = row.set_time_ms = row.message_time_ms = no_series();
+}
+
+// What a row of Algorithms 1 and 2 has beside the others.
+inline void set_sessions(evaluation::Row& row) {
+  row.t_l_ms = series(3, 4);
+  row.t_t_ms = series(2, 2.5);
+  row.t_d_ms = series(5, 6.5);
+  row.session_passes = series(1, 2);
+  row.get_time_ms = series(0.001, 0.001);
+  row.set_time_ms = series(4, 5);
+  row.message_time_ms = series(3.5, 4.5);
+  for (evaluation::SeedScore& seed : row.seeds) {
+    seed.sessions = {{.slave = 1,
+                      .pass = 2,
+                      .t_l = from_ms(3.5),
+                      .t_t = from_ms(2.25),
+                      .t_d = from_ms(5.75),
+                      .get = from_ms(0.001),
+                      .set = from_ms(4.499)}};
+  }
+}
+
 // What a row of steered exposures has beside the others.
 inline void set_steered(evaluation::Row& row) {
   row.capture_alignment = "nudge";
@@ -58,6 +84,8 @@ inline evaluation::Row full_row() {
   both.gathering = "yoon2021";
   both.amd_ms = series(1.5, 2.5);
   both.rmdv_ms = series(0.5, 1);
+  both.rmdv_printed_sqrt_ms = series(0.25, 0.75);
+  both.rmdv_printed_share = series(0, 0.5);
   both.absolute_error_ms = series(28, 30);
   both.bias_ms = series(-28, -30);
   both.host_error_ms = series(0.25, 0.75);
@@ -91,6 +119,7 @@ inline evaluation::Row full_row() {
                                                    .amd_percentile = {50, 32.25, 67.75},
                                                    .rmdv_percentile = {100, 95.25, 100}};
   set_unsteered(both);
+  set_without_sessions(both);
   both.seeds = {seed_score(1), seed_score(2)};
   return both;
 }
@@ -104,6 +133,7 @@ inline evaluation::Row bare_row() {
   none.gathering = "yoon2021";
   none.amd_ms = series(500, 1500000);
   none.rmdv_ms = series(200, 300);
+  none.rmdv_printed_sqrt_ms = none.rmdv_printed_share = no_series();
   none.absolute_error_ms = no_series();
   none.bias_ms = no_series();
   none.host_error_ms = no_series();
@@ -119,6 +149,7 @@ inline evaluation::Row bare_row() {
   none.set_absolute_error_ms = no_series();
   none.emission_latency_ms = no_series();
   set_unsteered(none);
+  set_without_sessions(none);
   return none;
 }
 

@@ -206,6 +206,7 @@ void Inputs::add_arguments() {
          "1", "--jobs", "1", "--pipelines", "chrony,free_running", "--format", "json"},
         {"trace", "--scenario", "3cam_1host_30fps", "--set", "/timeline/frames=5", "--pipeline",
          "genlock", "--seed", "3", "--format", "csv", "--output", "@written/trace.csv"},
+        {"paper", "--seeds", "0", "--jobs", "1", "--no-table-4", "--format", "json"},
         {"diagnose", "@good/csv/camera0.csv", "@good/csv/camera1.csv", "--rate-hz", "30"},
         {"compare", "@good/archive", "--with-baseline", "genlock", "--smallest-effect", "5"},
         {"gate", "@good/archive", "--baseline", "@good/baseline.json", "--mode", "exact"},

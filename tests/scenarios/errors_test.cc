@@ -26,6 +26,9 @@ TEST(SchemaErrors, TypeRangeAndChoice) {
   EXPECT_EQ(error_of(R"("evaluation": {"gathering_interval_periods": 0})"),
             "my.json:3: /evaluation/gathering_interval_periods: found 0, allowed a number above 0 "
             "and at most 10");
+  EXPECT_EQ(error_of(R"("evaluation": {"gathering_queue_frames": 0})"),
+            "my.json:3: /evaluation/gathering_queue_frames: found 0, allowed a whole number from 1 "
+            "to 10000");
   EXPECT_EQ(error_of(R"("cameras": {"sync_mode": "slav"})"),
             "my.json:3: /cameras/sync_mode: found \"slav\", allowed \"default\", \"master\", "
             "\"slave\", \"full_slave\", \"genlock\"");
@@ -48,7 +51,7 @@ TEST(SchemaErrors, UnknownKeys) {
             "my.json:3: /hosts/cuont: found an unknown key, did you mean count?");
   EXPECT_EQ(error_of(R"("evaluation": {"xyz": 6})"),
             "my.json:3: /evaluation/xyz: found an unknown key, allowed gathering_interval_periods, "
-            "rmdv_median, stream, table");
+            "gathering_queue_frames, rmdv_median, stream, table");
   EXPECT_EQ(error_of(R"("trigger": {"pauses": [{"at_ms": 1, "duration_ms": 2, "a/b": 3}]})"),
             "my.json:3: /trigger/pauses/0/a~1b: found an unknown key, allowed at_ms, duration_ms");
 }
@@ -293,19 +296,15 @@ TEST(Checks, CameraModels) {
 }
 
 TEST(Checks, RatesOfTheSyncModes) {
-  EXPECT_EQ(error_of_set("/trigger/rate_hz", "60"),
-            "--set /trigger/rate_hz=60: found 60 Hz, allowed at most 45.9184 Hz: genlock in a 90 "
-            "Hz mode ignores pulses for two mode periods less the guard of 0.02");
-  EXPECT_EQ(error_of_set("/cameras/genlock_guard_fraction", "0"), "");
-  EXPECT_EQ(error_of("\"cameras\": {\"genlock_guard_fraction\": 0},\n"
-                     " \"trigger\": {\"rate_error_ppm\": 1}"),
-            place_in_base("/trigger/rate_hz") +
-                ": found 45 Hz, allowed at most 45 Hz: "
-                "genlock in a 90 Hz mode ignores pulses for two mode periods less the guard of 0");
+  EXPECT_EQ(error_of_set("/trigger/rate_hz", "90"), "") << "half the rate, with a warning";
   EXPECT_EQ(error_of_set("/cameras/sync_mode", "slave"),
             place_in_base("/trigger/rate_hz") +
-                ": found 45 Hz, allowed 89.1 to 90.9 Hz in "
-                "sync mode \"slave\" with a 90 Hz mode");
+                ": found 45 Hz, allowed at least 89.1 Hz in sync mode \"slave\" with a 90 Hz mode");
+  EXPECT_EQ(error_of(R"("trigger": {"rate_hz": 120}, "cameras": {"sync_mode": "slave"})"), "");
+  EXPECT_EQ(error_of_set("/cameras/sync_mode", "default"),
+            place_in_base("/trigger/rate_hz") +
+                ": found 45 Hz, allowed 89.1 to 90.9 Hz in sync mode \"default\" with a 90 Hz "
+                "mode");
   EXPECT_EQ(error_of(R"("trigger": {"rate_hz": 90.9}, "cameras": {"sync_mode": "slave"})"), "");
   EXPECT_EQ(error_of("\"trigger\": {\"rate_hz\": 100},\n" +
                      streams({stream("depth", 848, 100, 100)}, "full_slave")),

@@ -1,6 +1,7 @@
 // What the scenarios say the paper published is what tests/data/published.json has of its tables.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -57,6 +58,32 @@ TEST(PublishedValues, TheRigIsThePapers) {
     EXPECT_EQ(scenario.hosts.count, rig.at("hosts")) << name;
     EXPECT_EQ(scenario.cameras.cameras_per_host, rig.at("cameras_per_host")) << name;
     EXPECT_EQ(scenario.timeline.frames, rig.at("frames_offline")) << name;
+    EXPECT_EQ(scenario.timeline.warm_up_ms, 1000 * rig.at("unstable_start_s").get<double>());
+    const std::int64_t of_branch = scenario.trigger.cameras_per_sub_trigger;
+    EXPECT_EQ(of_branch, rig.at("cameras_per_sub_trigger")) << name;
+    EXPECT_EQ(scenario.cameras.count, of_branch * rig.at("sub_triggers").get<std::int64_t>());
+  }
+}
+
+// Section 2.1: the Kinect Azure has the largest colour image and a supply of its own, the D400
+// alone has 90 fps and the largest depth image.
+TEST(PublishedValues, Table1SaysWhatTheTextSays) {
+  const Json cameras = test_data_json("published.json").at("table1_cameras");
+  ASSERT_EQ(cameras.size(), 6U);
+  const auto pixels = [](const Json& size) {
+    return size.at(0).get<std::int64_t>() * size.at(1).get<std::int64_t>();
+  };
+  for (const Json& camera : cameras) {
+    const std::string name = camera.at("name");
+    const bool is_kinect = name == "Kinect Azure";
+    const bool is_d400 = name == "RealSense D455" || name == "RealSense D435";
+    EXPECT_EQ(camera.at("power").get<std::string>().starts_with("DC"), is_kinect) << name;
+    EXPECT_EQ(pixels(camera.at("rgb_30fps")) == 3840 * 2160, is_kinect) << name;
+    EXPECT_LE(pixels(camera.at("rgb_30fps")), 3840 * 2160) << name;
+    EXPECT_EQ(!camera.at("depth_90fps").is_null(), is_d400) << name;
+    EXPECT_EQ(pixels(camera.at("depth_30fps")) == 1280 * 720, is_d400) << name;
+    EXPECT_LE(pixels(camera.at("depth_30fps")), 1280 * 720) << name;
+    EXPECT_EQ(camera.at("multi_camera") == "yes", is_d400) << name;
   }
 }
 

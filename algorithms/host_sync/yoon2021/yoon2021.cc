@@ -274,30 +274,43 @@ Task<NetworkDelay> measure_network_delay(SlaveSession session, std::uint32_t pas
   co_return result;
 }
 
-// The time synchronisation delay t_t. Each call sets the clock to a reading that has aged.
-Task<Nanoseconds> measure_time_delay(SlaveSession session) {
+// The time synchronisation delay t_t, and its two parts.
+struct TimeDelay {
+  Nanoseconds t_t{0};
+  Nanoseconds get{0};
+  Nanoseconds set{0};
+};
+
+// Each call sets the clock to a reading that has aged.
+Task<TimeDelay> measure_time_delay(SlaveSession session) {
   const SteadyClock& steady = session.host.steady_clock();
   HostClock& clock = session.host.clock();
-  Nanoseconds sum{0};
+  Nanoseconds get{0};
+  Nanoseconds set{0};
   for (std::uint32_t i = 0; i < session.settings.clock_calls; ++i) {
     const SteadyTime tic = steady.now();
     const HostTime now = co_await clock.now();
+    const SteadyTime has_read = steady.now();
     co_await clock.set(now);
     const SteadyTime toc = steady.now();
-    sum += toc - tic;
+    get += has_read - tic;
+    set += toc - has_read;
   }
-  co_return sum / (2 * std::int64_t{session.settings.clock_calls});
+  const std::int64_t calls{session.settings.clock_calls};
+  co_return TimeDelay{.t_t = (get + set) / (2 * calls), .get = get / calls, .set = set / calls};
 }
 
 // One turn of the loop of Algorithm 2. Returns the message that the next turn begins with.
 Task<MaybeMessage> run_slave_pass(SlaveSession session, std::uint32_t pass) {
   const Yoon2021Settings& settings = session.settings;
+  const SteadyClock& steady = session.host.steady_clock();
+  const SteadyTime begin = steady.now();
   const NetworkDelay network = co_await measure_network_delay(session, pass);
   if (!network.complete) co_return network.interruption;
-  const Nanoseconds t_t = co_await measure_time_delay(session);
+  const TimeDelay time = co_await measure_time_delay(session);
   Nanoseconds t_d{0};
   if (settings.add_network_delay) t_d += network.t_l;
-  if (settings.add_time_delay) t_d += t_t;
+  if (settings.add_time_delay) t_d += time.t_t;
   Bytes measured = encode({MessageKind::kMeasured, pass, 0, HostTime{}});
   co_await session.channel.send(std::move(measured));
 
@@ -306,9 +319,19 @@ Task<MaybeMessage> run_slave_pass(SlaveSession session, std::uint32_t pass) {
   if (!set_time || set_time->kind != MessageKind::kSetTime) co_return set_time;
   HostClock& clock = session.host.clock();
   co_await clock.set(set_time->time + t_d);
+  const SteadyTime end = steady.now();
   const HostTime t_s = co_await clock.now();
   Bytes slave_time = encode({MessageKind::kSlaveTime, pass, 0, t_s});
   co_await session.channel.send(std::move(slave_time));
+  session.host.report_delays({.slave = session.host.id(),
+                              .pass = pass,
+                              .begin = begin,
+                              .end = end,
+                              .t_l = network.t_l,
+                              .t_t = time.t_t,
+                              .t_d = t_d,
+                              .get = time.get,
+                              .set = time.set});
 
   const MaybeMessage next =
       co_await receive_next(session, MessageKind::kReady, pass + 1, std::nullopt);

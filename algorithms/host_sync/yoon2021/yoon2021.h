@@ -13,7 +13,8 @@
 //   delay = max(T_r - T_m, T_r - T_s)
 //
 // Passes repeat while delay > T_th; then SUCCESS ends the session. The four algorithms differ in
-// t_d alone (all run both measurements, so that they are comparable seed by seed):
+// t_d alone (all run both measurements, so that they send the same messages; a scenario may still
+// draw the load of each pipeline on its own, sim/network/load.h):
 // yoon2021_network t_l, yoon2021_time t_t, yoon2021_both t_l + t_t, yoon2021_neither 0.
 //
 // Defects of the algorithm that are kept (numbers as in docs/reference/paper.md section 4):
@@ -48,7 +49,10 @@
 // Time limits count from the peer's last message, on the steady clock. The slave's coroutine ends
 // on SUCCESS or GIVE_UP, or when the master has been silent for kSlavePatience silence limits.
 // run_master returns when every slave's outcome has been reported; it reports an exchange a pass
-// with t1 = T_m, t3 = T_s, t4 = T_r (t2 does not exist here).
+// with t1 = T_m, t3 = T_s, t4 = T_r (t2 does not exist here). The slave reports t_l, t_t, t_d and
+// the mean durations of its gets and sets once a pass, after SLAVE_TIME has left, so that reporting
+// delays no message (Host::report_delays). The steady clock is read once more between each get and
+// set for that, which takes a real host tens of nanoseconds.
 #pragma once
 
 #include <cstdint>

@@ -167,7 +167,8 @@ TEST(ApproximateTime, EqualsTheNaiveImplementation) {
     options.age_penalty = seed % 2 == 0 ? 0.1 : 0.0;
     options.lower_bound = from_ms(kPeriodMs * 0.25 * (seed % 4));
     if (seed % 5 == 0) options.max_interval = from_ms(kPeriodMs / 2);
-    const auto gatherer = make_approximate_time_gatherer(setup_of(world.sources), options);
+    const auto gatherer =
+        make_approximate_time_gatherer(setup_of(world.sources, options.queue), options);
     NaiveApproximateTime naive(world.sources, options);
     CollectedSets out;
     CollectedSets expected;

@@ -74,7 +74,7 @@ TEST(Epsilon, EqualsTheNaiveImplementation) {
     for (const GatherFrame& frame : nonempty(frames_of(world, seed))) {
       gatherer->push(frame, out);
       queues[frame.source].push_back(frame);
-      if (queues[frame.source].size() > setup.queue_limit) {
+      if (queues[frame.source].size() > setup.queue_limit.value()) {
         queues[frame.source].pop_front();
         ++discarded;
       }

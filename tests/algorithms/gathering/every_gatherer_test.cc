@@ -63,7 +63,7 @@ void expect_sound(const CollectedSets& out, const Gatherer& gatherer, const Gath
   for (const std::vector<GatherFrame>& set : out.partial) ASSERT_LT(set.size(), setup.sources);
   ASSERT_LE(used.size() + gatherer.discarded(), pushed) << context;
   ASSERT_LE(pushed - used.size() - gatherer.discarded(),
-            std::uint64_t{setup.sources} * setup.queue_limit)
+            std::uint64_t{setup.sources} * setup.queue_limit.value())
       << context << ": memory is not bounded";
 }
 

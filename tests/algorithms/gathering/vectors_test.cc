@@ -77,11 +77,12 @@ TEST(GatheringVectors, AlgorithmThreeAgreesWithRosInFiveOfFourteen) {
 TEST(GatheringVectors, Ros2EpsilonAllThree) {
   const Json vectors = test_data_json("vectors/ros2_approximate_epsilon_time.json");
   ASSERT_EQ(vectors.at("cases").size(), 3U);
+  EXPECT_EQ(kRosQueue, vectors.at("queue_size"));
   for (const Json& entry : vectors.at("cases")) {
     const auto gatherer =
         make_epsilon_gatherer({.sources = 2,
                                .interval = from_ms(entry.at("epsilon").get<double>() * 1000),
-                               .queue_limit = vectors.at("queue_size")});
+                               .queue_limit = vectors.at("queue_size").get<std::uint32_t>()});
     EXPECT_EQ(gathered(*gatherer, entry.at("input")), entry.at("expected").get<Sets>())
         << entry.at("name");
   }
@@ -90,12 +91,11 @@ TEST(GatheringVectors, Ros2EpsilonAllThree) {
 TEST(GatheringVectors, AzureKinectAllNine) {
   const Json vectors = test_data_json("vectors/k4a_capturesync.json");
   ASSERT_EQ(vectors.at("cases").size(), 9U);
+  EXPECT_EQ(kK4aQueue, vectors.at("queue_default_size"));
   for (const Json& entry : vectors.at("cases")) {
-    const auto gatherer =
-        make_k4a_gatherer({.sources = 2,
-                           .period = Microseconds(vectors.at("period_us").get<int>()),
-                           .queue_limit = vectors.at("queue_default_size")},
-                          Microseconds(vectors.at("depth_delay_off_color_usec").get<int>()));
+    const auto gatherer = make_k4a_gatherer(
+        {.sources = 2, .period = Microseconds(vectors.at("period_us").get<int>())},
+        Microseconds(vectors.at("depth_delay_off_color_usec").get<int>()));
     CollectedSets out;
     for (const Json& sample : entry.at("input_us")) {
       const std::int64_t at_us = sample[0];

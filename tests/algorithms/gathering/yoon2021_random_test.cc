@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "algorithms/gathering/gatherers.h"
@@ -26,7 +27,7 @@ class NaiveGatherer {
 
   void push(const GatherFrame& frame, FrameSetSink& sink) {
     std::deque<GatherFrame>& queue = queues_[frame.source];
-    if (queue.size() == setup_.queue_limit) {
+    if (setup_.queue_limit && queue.size() == *setup_.queue_limit) {
       queue.pop_front();
       ++discarded;
     }
@@ -54,8 +55,60 @@ class NaiveGatherer {
   std::vector<std::deque<GatherFrame>> queues_;
 };
 
+// Algorithm 3 as it is printed: all stamps of the capture in a queue a camera, then the sets.
+std::vector<std::vector<std::int64_t>> sets_as_printed(const std::vector<GatherFrame>& frames,
+                                                       const GatheringSetup& setup) {
+  std::vector<std::deque<GatherFrame>> queues(setup.sources);
+  for (const GatherFrame& frame : frames) queues[frame.source].push_back(frame);
+  std::vector<std::vector<std::int64_t>> sets;
+  while (std::ranges::none_of(queues, &std::deque<GatherFrame>::empty)) {
+    const auto [low, high] = std::ranges::minmax_element(
+        queues, {}, [](const auto& queue) { return queue.front().stamp; });
+    if (high->front().stamp - low->front().stamp >= setup.interval) {
+      low->pop_front();
+      continue;
+    }
+    std::vector<std::int64_t>& set = sets.emplace_back();
+    for (auto& queue : queues) {
+      set.push_back(queue.front().tag);
+      queue.pop_front();
+    }
+  }
+  return sets;
+}
+
+std::vector<std::vector<std::int64_t>> streamed_sets(const std::vector<GatherFrame>& frames,
+                                                     const GatheringSetup& setup) {
+  const auto gatherer = make_yoon2021_gatherer(setup);
+  CollectedSets sets;
+  for (const GatherFrame& frame : frames) gatherer->push(frame, sets);
+  return sets.tags();
+}
+
+// Drops, offsets of whole periods as a stepped clock has them, some beyond the capture's length,
+// cameras that die, some before their first frame.
+GatheringWorld hazardous_world(boost::random::mt19937& random) {
+  boost::random::uniform_01<double> uniform;
+  GatheringWorld world;
+  world.period_ms = kPeriodMs;
+  world.sources = 1 + static_cast<std::uint32_t>(random() % 7);
+  world.pulses = 400;
+  world.sigma_ms = 4 * uniform(random);
+  world.drop = random() % 2 == 0 ? 0 : 0.1 * uniform(random);
+  world.outage = 0.3 * uniform(random);
+  world.delay_max_ms = 100 * uniform(random);
+  world.quantum_ms = random() % 2 == 0 ? 4 : 0;
+  for (std::uint32_t source = 0; source < world.sources; ++source) {
+    const auto periods = static_cast<double>(random() % 900) - 450;
+    world.offset_ms.push_back(random() % 3 == 0 ? periods * kPeriodMs : 0);
+    const auto frames = static_cast<std::int64_t>(random() % 400);
+    world.dies_after.push_back(random() % 6 == 0 ? frames : world.pulses);
+  }
+  return world;
+}
+
 GatheringSetup random_setup(const GatheringWorld& world, double interval_ms,
-                            std::uint32_t queue_limit) {
+                            std::optional<std::uint32_t> queue_limit) {
   return {.sources = world.sources,
           .period = from_ms(kPeriodMs),
           .interval = from_ms(interval_ms),
@@ -75,7 +128,8 @@ TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
     world.outage = 0.3 * uniform(random);
     world.delay_max_ms = 100 * uniform(random);
     world.quantum_ms = seed % 2 == 0 ? 4 : 0;
-    const auto limit = static_cast<std::uint32_t>(seed % 3 == 0 ? 1 + random() % 4 : 64);
+    std::optional<std::uint32_t> limit;
+    if (seed % 3 != 0) limit = static_cast<std::uint32_t>(seed % 3 == 1 ? 1 + random() % 4 : 64);
     const GatheringSetup setup = random_setup(world, 1 + 21 * uniform(random), limit);
     const auto gatherer = make_yoon2021_gatherer(setup);
     NaiveGatherer naive(setup);
@@ -89,6 +143,25 @@ TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
     }
     ASSERT_EQ(sets.tags(), expected.tags()) << "seed " << seed;
   }
+}
+
+TEST(Yoon2021Random, WithoutALimitItGivesTheSetsThatArePrinted) {
+  int of_other_pulses = 0;
+  int lost_by_a_limit = 0;
+  for (std::uint32_t seed = 1; seed <= 300; ++seed) {
+    boost::random::mt19937 random(seed);
+    const GatheringWorld world = hazardous_world(random);
+    const std::vector<GatherFrame> frames = frames_of(world, seed);
+    const auto printed = sets_as_printed(frames, random_setup(world, kPeriodMs / 2, {}));
+    ASSERT_EQ(streamed_sets(frames, random_setup(world, kPeriodMs / 2, {})), printed)
+        << "seed " << seed;
+    of_other_pulses += std::ranges::any_of(printed, [](const std::vector<std::int64_t>& set) {
+      return std::ranges::any_of(set, [&](std::int64_t tag) { return tag > set.front() + 64; });
+    });
+    lost_by_a_limit += streamed_sets(frames, random_setup(world, kPeriodMs / 2, 64)) != printed;
+  }
+  EXPECT_GT(of_other_pulses, 20);  // the hazard occurs, and a queue of 64 frames hides it
+  EXPECT_GT(lost_by_a_limit, of_other_pulses);
 }
 
 TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
@@ -121,7 +194,8 @@ TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
     // Every frame is in a set, given up or waiting in a queue.
     const std::uint64_t used = out.sets.size() * world.sources + gatherer->discarded();
     ASSERT_LE(used, frames.size()) << "seed " << seed;
-    ASSERT_LE(frames.size() - used, (world.sources - 1) * setup.queue_limit) << "seed " << seed;
+    ASSERT_LE(frames.size() - used, (world.sources - 1) * setup.queue_limit.value())
+        << "seed " << seed;
   }
 }
 

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "algorithms/gathering/fronts.h"
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 
@@ -114,6 +116,40 @@ TEST(Yoon2021Gatherer, OverflowDropsTheOldestAndRecovers) {
   EXPECT_THAT(out.tags(), ElementsAre(ElementsAre(6, 6), ElementsAre(7, 7), ElementsAre(8, 8),
                                       ElementsAre(9, 9)));
   EXPECT_EQ(gatherer->discarded(), 12U);
+}
+
+TEST(Yoon2021Gatherer, WithoutALimitNothingIsDropped) {
+  constexpr std::int64_t kPulses = 10 * std::int64_t{FrontMatcher::kFirstQueue};
+  for (const std::optional<std::uint32_t> limit : {std::optional<std::uint32_t>(), {100}}) {
+    GatheringSetup setup = setup_of(3);
+    setup.queue_limit = limit;
+    const auto gatherer = make_yoon2021_gatherer(setup);
+    CollectedSets out;
+    for (const std::uint32_t source : {0U, 2U, 1U}) {  // the last one delivers when all is over
+      for (std::int64_t pulse = 0; pulse < kPulses; ++pulse) {
+        gatherer->push(frame_at(source, static_cast<double>(pulse) * kPeriodMs, pulse), out);
+      }
+    }
+    EXPECT_EQ(out.pure(), limit ? 100 : kPulses);
+    EXPECT_EQ(out.pure(), static_cast<std::int64_t>(out.sets.size()));
+    EXPECT_EQ(gatherer->discarded(), limit ? 3U * (kPulses - 100) : 0U);
+  }
+}
+
+// A host whose clock is a hundred periods behind: the next stamps of its camera are as old as what
+// waits longest.
+TEST(Yoon2021GathererDefect, AnOffsetOfManyPeriodsGivesWrongSetsSilently) {
+  GatheringSetup setup = setup_of(2);
+  setup.queue_limit.reset();
+  const auto gatherer = make_yoon2021_gatherer(setup);
+  CollectedSets out;
+  for (std::int64_t pulse = 0; pulse < 300; ++pulse) {
+    const double at_ms = static_cast<double>(pulse) * kPeriodMs;
+    gatherer->push(frame_at(0, at_ms, pulse), out);
+    gatherer->push(frame_at(1, at_ms - 100 * kPeriodMs, pulse), out);
+  }
+  EXPECT_EQ(out.sets.size(), 200U);
+  for (const std::vector<std::int64_t>& set : out.tags()) EXPECT_EQ(set[1], set[0] + 100);
 }
 
 TEST(Yoon2021Gatherer, QueueOfOneFrame) {

@@ -100,6 +100,7 @@ class ScriptHost : public Host {
   std::vector<double> frequencies_ppb;  // of adjust_frequency(), which changes nothing
   std::vector<Exchange> exchanges;
   std::vector<SyncOutcome> outcomes;
+  std::vector<SessionDelays> delays;
   std::vector<Nanoseconds> outcome_times;
 
   Nanoseconds lead_over(const ScriptHost& other) const { return offset - other.offset; }
@@ -115,6 +116,7 @@ class ScriptHost : public Host {
   double random_uniform() override { return uniform; }
   void report_exchange(const Exchange& exchange) override { exchanges.push_back(exchange); }
   void report_outcome(const SyncOutcome& outcome) override;
+  void report_delays(const SessionDelays& reported) override { delays.push_back(reported); }
 
  private:
   class Channel;

@@ -100,6 +100,30 @@ TEST_F(TraceCommand, HostsAreProcessesAndTheirClocksCounters) {
   EXPECT_FALSE(events_of(json, "s", "message").empty());
 }
 
+TEST_F(TraceCommand, SessionsAreSlicesOfTheirSlavesInTurn) {
+  const Json json = valid_trace("18cam_6host_45fps", {"--pipeline", "yoon2021_both"});
+  const std::vector<Json> sessions = slices_on(json, "session");
+  ASSERT_EQ(sessions.size(), 5U);
+  double free_at_us = 0;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    const Json& session = sessions[i];
+    EXPECT_EQ(session["pid"], 3 + i) << "a slave's process";
+    EXPECT_GE(session["ts"].get<double>(), free_at_us) << "one after the other";
+    free_at_us = session["ts"].get<double>() + session["dur"].get<double>();
+    const Json& delays = session["args"];
+    EXPECT_EQ(delays["passes"], 1);
+    const auto ms = [&delays](const char* name) { return delays[name].get<double>(); };
+    EXPECT_NEAR(ms("t_d_ms"), ms("t_l_ms") + ms("t_t_ms"), 2e-6);
+    EXPECT_NEAR(ms("t_t_ms"), (ms("get_ms") + ms("set_ms")) / 2, 2e-6);
+    // 100 calls of each kind, 100 stamps and one set more make up nearly all of it.
+    const double most_us = 1e3 * (100 * (ms("get_ms") + ms("set_ms")) + 100 * ms("t_l_ms"));
+    EXPECT_GT(session["dur"].get<double>(), most_us);
+    EXPECT_LT(session["dur"].get<double>(), 1.2 * most_us);
+  }
+  EXPECT_TRUE(
+      slices_on(valid_trace("18cam_6host_45fps", {"--pipeline", "oracle"}), "session").empty());
+}
+
 TEST_F(TraceCommand, DroppedFramesAreInstants) {
   const Json json = valid_trace("18cam_6host_45fps_frame_drops_10pct");
   std::size_t lost = 0;

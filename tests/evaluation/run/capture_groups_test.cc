@@ -113,6 +113,7 @@ TEST(ScoringAlone, NoWorldReadsWhatIsSoCalled) {
   const std::vector<std::string> as_it_is = nonempty(recorded_by({}, choice));
   for (const scenarios::Override& change :
        std::vector<scenarios::Override>{{"/evaluation/gathering_interval_periods", "0.07"},
+                                        {"/evaluation/gathering_queue_frames", "3"},
                                         {"/evaluation/rmdv_median", "mean_of_middle_two"},
                                         {"/algorithms/yoon2021/stamps", "7"},
                                         {"/algorithms/kalman/gate", "2"},

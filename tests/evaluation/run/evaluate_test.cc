@@ -64,7 +64,7 @@ TEST(EvaluateTest, ARowPerPipelineAndAValuePerSeed) {
   EXPECT_DOUBLE_EQ(row.margin_ms, 6);
   EXPECT_FALSE(row.published.has_value());
   EXPECT_NEAR(results.rows[1].amd_ms.median, 3.5, 1e-6);
-  EXPECT_EQ(results.claims.size(), 10U);
+  EXPECT_EQ(results.claims.size(), 13U);
   EXPECT_THAT(results.warnings, IsEmpty());
 }
 

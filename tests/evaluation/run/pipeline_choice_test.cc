@@ -213,11 +213,15 @@ TEST(PipelineChoiceTest, TheScenarioDecidesWhatIsScored) {
   scenario.evaluation.stream = scenarios::StreamKind::kColour;
   scenario.evaluation.rmdv_median = scenarios::MedianKind::kMeanOfMiddleTwo;
   scenario.evaluation.gathering_interval_periods = 0.25;
+  EXPECT_EQ(scorer_setup(scenario, choose_pipelines(scenario, {})[0]).gathering_queue_frames,
+            std::nullopt);
+  scenario.evaluation.gathering_queue_frames = 17;
   scenario.cameras.sync_mode = scenarios::SyncMode::kGenlock;
   const ScorerSetup setup = scorer_setup(scenario, choose_pipelines(scenario, {})[0]);
   EXPECT_EQ(setup.stream, StreamKind::kColour);
   EXPECT_EQ(setup.median, MedianKind::kMeanOfMiddleTwo);
   EXPECT_DOUBLE_EQ(setup.gathering_interval_periods, 0.25);
+  EXPECT_EQ(setup.gathering_queue_frames, 17U);
   EXPECT_TRUE(setup.genlock);
 }
 

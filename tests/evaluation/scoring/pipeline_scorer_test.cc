@@ -37,12 +37,63 @@ TEST(PipelineScorerTest, PerfectStampsScoreZero) {
   EXPECT_THAT(seed.offline_amd_ms, IsNan());
 }
 
+// One camera of six is late: by 6 ms in odd pulses, whose mean is 1 ms above the median, and early
+// by as much in even ones, which have no real root.
+TEST(PipelineScorerTest, RmdvAsPrintedIsOverThePulsesThatHaveARoot) {
+  TestCapture capture(2, 3);
+  capture.late_by = [](std::uint32_t camera, std::int64_t pulse) {
+    return from_ms(camera != 4 ? 6 : pulse % 2 == 1 ? 12 : 0);
+  };
+  const SeedScore seed = score(capture, arrival_setup());
+  EXPECT_NEAR(seed.rmdv_printed_sqrt_ms, 1, kTolerance);
+  EXPECT_DOUBLE_EQ(seed.rmdv_printed_share, 0.5);
+  EXPECT_NEAR(seed.rmdv_ms, std::sqrt(6.0), kTolerance);
+}
+
+// A mode too slow for the pulses: each camera exposes at every second one. Pulses 3 to 12 count.
+TEST(PipelineScorerTest, PulsesThatNeverExposeAreNoLostFrames) {
+  ScorerSetup setup = arrival_setup();
+  setup.pulses_per_frame = 2;
+  TestCapture capture(2, 3);
+  capture.late_by = staircase;
+  capture.lost = [](std::uint32_t, std::int64_t pulse) { return pulse % 2 == 1; };
+  const SeedScore even = score(capture, setup);
+  EXPECT_EQ(even.frames.expected, 6 * 5);
+  EXPECT_EQ(even.frames.delivered, 6 * 5);
+  EXPECT_EQ(even.frames.dropped, 0);
+  EXPECT_EQ(even.sets.complete_pulses, 5);
+  ASSERT_EQ(even.pulses.size(), 5U);
+  EXPECT_EQ(even.pulses.front().pulse, 4);
+  EXPECT_NEAR(even.amd_ms, 5, kTolerance) << "over the pulses that expose";
+
+  capture.lost = [](std::uint32_t camera, std::int64_t pulse) {
+    return pulse % 2 == 1 || (camera == 1 && (pulse == 4 || pulse == 8 || pulse == 12)) ||
+           camera == 5;
+  };
+  const SeedScore lossy = score(capture, setup);
+  EXPECT_EQ(lossy.frames.expected, 6 * 5);
+  EXPECT_EQ(lossy.frames.delivered, 4 * 5 + 2);
+  EXPECT_EQ(lossy.frames.dropped, 3 + 5);
+
+  // Camera 0 exposes at the odd pulses 3, 5, 7, 9 and 11: no pulse is complete.
+  capture.lost = [](std::uint32_t camera, std::int64_t pulse) {
+    return pulse % 2 == (camera == 0 ? 0 : 1);
+  };
+  const SeedScore apart = score(capture, setup);
+  EXPECT_EQ(apart.frames.dropped, 0);
+  EXPECT_EQ(apart.frames.expected, 6 * 5);
+  EXPECT_EQ(apart.sets.complete_pulses, 0);
+  EXPECT_THAT(apart.amd_ms, IsNan());
+}
+
 TEST(PipelineScorerTest, AmdAndRmdvOfAStaircase) {
   TestCapture capture(2, 3);
   capture.late_by = staircase;
   const SeedScore seed = score(capture, arrival_setup());
   EXPECT_NEAR(seed.amd_ms, 5, kTolerance);
   EXPECT_NEAR(seed.rmdv_ms, std::sqrt((9.0 + 4 + 1 + 0 + 1 + 4) / 6), kTolerance);  // about 3
+  EXPECT_TRUE(std::isnan(seed.rmdv_printed_sqrt_ms));  // the mean, 2.5, is below 3
+  EXPECT_DOUBLE_EQ(seed.rmdv_printed_share, 0);
   EXPECT_NEAR(seed.absolute_error_ms, 12.5, kTolerance);
   EXPECT_NEAR(seed.spread_in_host_ms, 2, kTolerance);
   EXPECT_NEAR(seed.spread_between_hosts_ms, 3, kTolerance);
@@ -254,6 +305,7 @@ class ScriptedGatherer final : public Gatherer {
 TEST(PipelineScorerTest, CountsSetsWithAnEvaluatedMember) {
   ScorerSetup setup = arrival_setup();
   setup.gathering_interval_periods = 0.25;
+  setup.gathering_queue_frames = 9;
   GatheringSetup given;
   setup.make_gatherer = [&](const GatheringSetup& gathering) {
     given = gathering;
@@ -271,6 +323,7 @@ TEST(PipelineScorerTest, CountsSetsWithAnEvaluatedMember) {
   EXPECT_EQ(given.sources, 2U);
   EXPECT_EQ(given.period, from_ms(20));
   EXPECT_EQ(given.interval, from_ms(5));
+  EXPECT_EQ(given.queue_limit, 9U);
 }
 
 TEST(PipelineScorerTest, GatheredSetsHaveScoresOfTheirOwn) {

@@ -57,6 +57,8 @@ TEST(PipelineScorerUnverified, ScoresTheGatheredSets) {
   EXPECT_EQ(seed.ground_truth, GroundTruth::kNone);
   EXPECT_NEAR(seed.amd_ms, 5, kTolerance);
   EXPECT_NEAR(seed.rmdv_ms, std::sqrt((9.0 + 4 + 1 + 0 + 1 + 4) / 6), kTolerance);
+  EXPECT_TRUE(std::isnan(seed.rmdv_printed_sqrt_ms));  // mean 2.5, upper-middle 3: no real root
+  EXPECT_DOUBLE_EQ(seed.rmdv_printed_share, 0);
   EXPECT_NEAR(seed.set_amd_ms, 5, kTolerance);
   EXPECT_NEAR(seed.emission_latency_ms, 0, kTolerance);
   EXPECT_NEAR(seed.emission_latency_max_ms, 0, kTolerance);

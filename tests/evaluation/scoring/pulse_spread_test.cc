@@ -73,6 +73,47 @@ TEST(MetricsTest, StepsAttainTheBoundAndNoneExceedsIt) {
   }
 }
 
+double mean_difference(const std::vector<std::int64_t>& stamps, MedianKind kind) {
+  std::vector<std::int64_t> workspace;
+  return mean_difference_ms(stamps, kind, workspace);
+}
+
+TEST(PrintedRmdvTest, TheRadicandIsTheMeanLessTheMedian) {
+  const std::vector<std::int64_t> stamps = {9 * kMs, 2 * kMs, 0, 4 * kMs};  // mean 3.75
+  EXPECT_DOUBLE_EQ(mean_difference(stamps, MedianKind::kUpperMiddle), -0.25);
+  EXPECT_DOUBLE_EQ(mean_difference(stamps, MedianKind::kMeanOfMiddleTwo), 0.75);
+}
+
+// docs/reference/paper.md section 6: at most (8/18) of the range, at 10 stamps low and 8 high.
+TEST(PrintedRmdvTest, StepsAttainItsBounds) {
+  for (std::size_t n = 2; n <= 24; n += 2) {
+    double least = 0;
+    double largest = 0;
+    for (std::size_t low = 0; low <= n; ++low) {
+      const double radicand = mean_difference(step(n, low), MedianKind::kUpperMiddle) / 1000;
+      least = std::min(least, radicand);
+      largest = std::max(largest, radicand);
+    }
+    EXPECT_DOUBLE_EQ(least, -0.5) << "n = " << n;
+    EXPECT_DOUBLE_EQ(largest, (static_cast<double>(n) / 2 - 1) / static_cast<double>(n))
+        << "n = " << n;
+  }
+}
+
+TEST(PrintedRmdvTest, APulseWithoutARealRootIsLeftOutAndCounted) {
+  PrintedRmdv printed;
+  EXPECT_TRUE(std::isnan(printed.mean_sqrt_ms()));
+  EXPECT_TRUE(std::isnan(printed.real_share()));
+  printed.add(-4);
+  EXPECT_TRUE(std::isnan(printed.mean_sqrt_ms()));
+  EXPECT_DOUBLE_EQ(printed.real_share(), 0);
+  printed.add(4);
+  printed.add(0);
+  printed.add(9);
+  EXPECT_DOUBLE_EQ(printed.mean_sqrt_ms(), (2.0 + 0 + 3) / 3);
+  EXPECT_DOUBLE_EQ(printed.real_share(), 0.75);
+}
+
 TEST(MetricsTest, RmdvNeverExceedsTheBoundTimesAmd) {
   for (std::uint32_t seed = 1; seed <= 2000; ++seed) {
     std::mt19937 random(seed);

@@ -113,8 +113,10 @@ TEST(StrippedTruth, ClaimsRestOnVerifiedRowsOnly) {
   const Results results =
       stripped(scenario, {.first_seed = 1, .seeds = 1, .jobs = 1, .pipelines = {"yoon2021_both"}});
   for (const Claim& claim : nonempty(results.claims)) {
-    EXPECT_FALSE(claim.holds_fraction.has_value()) << claim.id;
-    EXPECT_FALSE(claim.needs.empty()) << claim.id;
+    // What the sessions took is known without truth.
+    const bool is_of_sessions = claim.id.starts_with("C11");
+    EXPECT_EQ(claim.holds_fraction.has_value(), is_of_sessions) << claim.id;
+    EXPECT_EQ(claim.needs.empty(), is_of_sessions) << claim.id;
   }
 }
 

@@ -1,9 +1,11 @@
 #include "evaluation/sweep/sweep_plan.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <string>
 
+#include "scenarios/loader.h"
 #include "scenarios/study.h"
 
 namespace simbench::evaluation {
@@ -128,6 +130,20 @@ TEST(SweepPlan, OverridesHoldAtEveryPoint) {
   SweepRequest request = two_axes();
   request.overrides = {{"/timeline/frames", "77"}};
   EXPECT_THAT(make_plan(request).scenario_json, HasSubstr("\"frames\": 77"));
+}
+
+TEST(SweepPlan, KnowsWhetherALoadIsDrawnForEachPipeline) {
+  EXPECT_TRUE(make_plan({.scenario = "18cam_6host_45fps", .axes = {}, .seeds = 1}).draws_load);
+  EXPECT_FALSE(make_plan({.scenario = "18cam_6host_45fps_lan", .axes = {}, .seeds = 1}).draws_load);
+  for (const char* const member : scenarios::Scenario::kLoadMembers) {
+    EXPECT_TRUE(scenarios::load_scenario("18cam_6host_45fps_lan", {{member, "0.1"}}).draws_load())
+        << member;
+    EXPECT_TRUE(make_plan({.scenario = "18cam_6host_45fps_lan",
+                           .axes = {fmt::format("{}=0,0.1", member)},
+                           .seeds = 1})
+                    .draws_load)
+        << member;
+  }
 }
 
 TEST(SweepPlan, EveryStudyIsASweepThatCanRun) {

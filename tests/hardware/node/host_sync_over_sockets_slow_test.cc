@@ -6,6 +6,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <cmath>
+#include <optional>
 
 #include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
@@ -55,6 +56,15 @@ bool is_synchronised(const HostPair& pair) {
   return false;
 }
 
+// What the slave reported of its last pass; nothing if it has reported none.
+std::optional<SessionDelays> last_delays(const HostPair& pair) {
+  std::optional<SessionDelays> last;
+  for (const RecordingEvent& event : pair.events(1)) {
+    if (const auto* delays = std::get_if<SessionDelays>(&event)) last = *delays;
+  }
+  return last;
+}
+
 TEST(HostSyncOverSockets, Yoon2021) {
   for (const char* const row : {"yoon2021_both", "yoon2021_time", "yoon2021_network"}) {
     HostPair pair(from_ms(300), 20, -30);
@@ -62,6 +72,13 @@ TEST(HostSyncOverSockets, Yoon2021) {
     synchronise(pair, *make(row));
     EXPECT_TRUE(is_synchronised(pair)) << row;
     EXPECT_LT(error_ms(pair), 5) << row;
+    const std::optional<SessionDelays> delays = last_delays(pair);
+    ASSERT_TRUE(delays) << row;
+    EXPECT_EQ(delays->slave, 1U);
+    EXPECT_GT(delays->t_l.count(), 0) << row;
+    EXPECT_GT(delays->set.count(), 0) << row;
+    EXPECT_LE(std::abs((delays->t_t - (delays->get + delays->set) / 2).count()), 2) << row;
+    EXPECT_LT(delays->begin, delays->end) << row;
   }
 }
 

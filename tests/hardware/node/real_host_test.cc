@@ -117,13 +117,15 @@ TEST_F(RealHostTest, PutsOnRecordWhatHappens) {
   await(context(), host().clock().adjust_frequency(5000));
   host().report_exchange({.peer = 0, .t1 = HostTime(from_ms(1)), .t2 = {}, .t3 = {}, .t4 = {}});
   host().report_outcome({.slave = 1, .synchronised = true, .passes = 2, .message = ""});
+  host().report_delays({.slave = 1, .pass = 2, .t_l = from_ms(3)});
   const auto& events = pair.events(1);
-  ASSERT_EQ(events.size(), 3u);
+  ASSERT_EQ(events.size(), 4u);
   EXPECT_DOUBLE_EQ(std::get<ClockAdjustment>(events[0]).rate_ppb, 5000);
   EXPECT_EQ(std::get<ClockAdjustment>(events[0]).host, 1u);
   EXPECT_EQ(std::get<ExchangeEvent>(events[1]).host, 1u);
   EXPECT_EQ(std::get<ExchangeEvent>(events[1]).exchange.t1, HostTime(from_ms(1)));
   EXPECT_EQ(std::get<SyncOutcome>(events[2]).passes, 2u);
+  EXPECT_EQ(std::get<SessionDelays>(events[3]).t_l, from_ms(3));
   EXPECT_TRUE(pair.events(0).empty());
 }
 

@@ -81,17 +81,45 @@ TEST_F(ArchiveReader, SeedsOfAChangedWorldAreRead) {
   ASSERT_EQ(archive.results.rows[0].seeds[1].pulses.size(), 2);
   EXPECT_EQ(archive.results.rows[0].seeds[1].pulses[1].deviation_ms, 0.5);
   EXPECT_EQ(archive.results.rows[0].seeds[1].host_errors_ms, (std::vector<double>{0, -0.125}));
-  edit("hosts.csv", "0,0,1,\"changed", "0,0,\"changed");
+  edit("hosts.csv", "0,0,1,,,,,,,\"changed", "0,0,,,,,,,\"changed");
   EXPECT_THAT(problem(), HasSubstr("hosts.csv:3: found"));
 }
 
 TEST_F(ArchiveReader, OlderNamesOfColumnsAreRead) {
   edit("frames.csv", "amd_ms,rmdv_ms", "spread_ms,deviation_ms");
-  edit("hosts.csv", "host_error_ms", "error_ms");
+  write("hosts.csv",
+        "pipeline,seed,host,error_ms,synchronised\nyoon2021_both,2,0,0,1\n"
+        "yoon2021_both,2,1,-0.125,1\n");
   Archive archive = read_archive(folder_.path().string());
   read_seed_details(archive);
   EXPECT_EQ(archive.results.rows[0].seeds[1].pulses[1].deviation_ms, 0.5);
   EXPECT_EQ(archive.results.rows[0].seeds[1].host_errors_ms, (std::vector<double>{0, -0.125}));
+}
+
+TEST_F(ArchiveReader, HostsWithoutDelaysOfSessionsAreRead) {
+  write("hosts.csv", "pipeline,seed,host,host_error_ms,synchronised\nyoon2021_both,2,0,0.5,1\n");
+  Archive archive = read_archive(folder_.path().string());
+  read_seed_details(archive);
+  EXPECT_EQ(archive.results.rows[0].seeds[1].host_errors_ms, (std::vector<double>{0.5}));
+  EXPECT_TRUE(archive.results.rows[0].seeds[1].sessions.empty());
+}
+
+TEST_F(ArchiveReader, DelaysOfSessionsAreRead) {
+  set_sessions(written_.rows[0]);
+  OutputFolder output(folder_.path());
+  write_archive(output, written_, scenarios::load_scenario("3cam_1host_30fps"),
+                {.command = {"simbench", "run"}, .started = {}, .finished = {}});
+  Archive archive = read_archive(folder_.path().string());
+  EXPECT_EQ(archive.results.rows[0].t_l_ms.values, (std::vector<double>{3, 4}));
+  read_seed_details(archive);
+  const std::vector<SessionDelays>& read = archive.results.rows[0].seeds[1].sessions;
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].slave, 1U);
+  EXPECT_EQ(read[0].pass, 2U);
+  EXPECT_EQ(read[0].t_l, from_ms(3.5));
+  EXPECT_EQ(read[0].set, from_ms(4.499));
+  edit("hosts.csv", "3.5,2.25", "3.5e99,2.25");
+  EXPECT_THAT(problem(), AllOf(HasSubstr("hosts.csv:3: found 3.5e+99 ms"), HasSubstr("allowed")));
 }
 
 TEST_F(ArchiveReader, WhatIsWrittenIsRead) {
@@ -121,12 +149,20 @@ TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
           &evaluation::Row::dynamic_te_ms, &evaluation::Row::packets_per_s,
           &evaluation::Row::exposure_spread_ms, &evaluation::Row::seed_precision,
           &evaluation::Row::seed_recall, &evaluation::Row::set_amd_ms,
-          &evaluation::Row::set_absolute_error_ms, &evaluation::Row::emission_latency_ms}) {
+          &evaluation::Row::set_absolute_error_ms, &evaluation::Row::emission_latency_ms,
+          &evaluation::Row::rmdv_printed_sqrt_ms, &evaluation::Row::rmdv_printed_share}) {
       (read.*series).p05 = (row.*series).p05;
       (read.*series).p95 = (row.*series).p95;
     }
   }
   EXPECT_EQ(json(archive.results), json(written_));
+}
+
+TEST_F(ArchiveReader, LoadsOfPipelinesAreRead) {
+  EXPECT_FALSE(read_archive(folder_.path().string()).results.draws_load);
+  written_.draws_load = true;
+  write("results.json", json(written_));
+  EXPECT_TRUE(read_archive(folder_.path().string()).results.draws_load);
 }
 
 TEST_F(ArchiveReader, WhatSteersTheExposuresIsRead) {

@@ -16,6 +16,7 @@ namespace {
 using evaluation::Verdict;
 using Json = nlohmann::ordered_json;
 using scenarios::InputError;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -147,6 +148,20 @@ TEST(ComparePipelines, BIsHeldAgainstA) {
   EXPECT_EQ(c.pipelines[0].metrics[0].verdict, Verdict::kBetter);
   EXPECT_THAT([] { compare_pipelines(sample_archive("a"), "plain", "godo", {}); },
               ThrowsMessage<InputError>(HasSubstr("it has plain, good")));
+}
+
+TEST(ComparePipelines, LoadsOfTheirOwnAreSaid) {
+  Archive a = sample_archive("a");
+  a.results.draws_load = true;
+  const auto says_so = ElementsAre(HasSubstr("drawn for each pipeline on its own"));
+  EXPECT_THAT(compare_pipelines(a, "plain", "good", {}).notes, says_so);
+  EXPECT_THAT(compare_with_baseline(a, "plain", {}).notes, says_so);
+  EXPECT_THAT(compare_archives(a, a, {}).notes, IsEmpty()) << "one pipeline has one load in a seed";
+  Archive b = a;
+  b.results.scenario = "other";
+  replace(b.scenario_json, "\"name\": \"", "\"name\": \"other");
+  EXPECT_THAT(compare_archives(a, b, {.different_scenarios = true}).notes,
+              Contains(HasSubstr("drawn for each pipeline on its own")));
 }
 
 TEST(CompareWithBaseline, SaysHowMuchBetterInPlainWords) {

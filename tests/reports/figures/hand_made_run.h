@@ -50,6 +50,7 @@ inline evaluation::RunDetail hand_made_run(const std::vector<double>& host_ms,
       frame.arrival_ms = at_ms + 5 + host_ms[detail.host];
       frame.from_start_ms = at_ms + host_ms[detail.host];
       frame.reference_ms = at_ms;
+      frame.own_host_ms = at_ms + host_ms[detail.host];
       frame.exposure_start_ms = at_ms - 1;
       frame.exposure_end_ms = at_ms + 1;
       if (frame.evaluated) {

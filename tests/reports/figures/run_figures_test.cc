@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/nonempty.h"
@@ -65,10 +66,53 @@ TEST(RunFiguresTest, TheOffsetOfAHostSeparatesTheHosts) {
   }
 }
 
+// Host 1's clock is 2.5 ms ahead; its exposures are 3 ms longer and their middles 1.5 ms later; its
+// stamps are another 0.25 ms later.
+TEST(RunFiguresTest, TheCaptionOfHostsSaysWhatTheirDistanceConsistsOf) {
+  RunDetail run = hand_made_run({0, 2.5}, 2);
+  for (std::size_t camera = 2; camera < 4; ++camera) {
+    for (evaluation::FrameDetail& frame : run.cameras[camera].frames) {
+      frame.exposure_end_ms += 3;
+      frame.reference_ms += 1.5;
+      frame.own_host_ms += 1.5;
+      frame.global_ms += 1.75;
+    }
+  }
+  EXPECT_THAT(
+      hosts(run).caption,
+      HasSubstr("the stamps of one host lie within 0; hosts 0 and 1, the farthest, are 4.25 "
+                "ms apart: +2.50 ms by their clocks, +1.50 ms by the middles of their "
+                "exposures (2.00 ms and 5.00 ms long), +0.250 ms by the delay from there "
+                "to the stamp."));
+  run.has_truth = false;
+  EXPECT_THAT(hosts(run).caption, HasSubstr("nothing tells clocks from exposures"));
+}
+
+TEST(RunFiguresTest, AStampThatIsACopyIsNotDrawnAndSaidToLack) {
+  RunDetail run = hand_made_run({0}, 1);
+  for (evaluation::FrameDetail& frame : run.cameras[0].frames) {
+    frame.backend_ms = frame.arrival_ms;
+    frame.frame_ms = frame.sensor_ms;
+  }
+  const Figure figure = stamp_intervals(run);
+  ASSERT_THAT(figure.panels, SizeIs(2));
+  EXPECT_THAT(figure.caption, HasSubstr("frame none, back-end none, arrival"));
+  EXPECT_EQ(std::ranges::count(figure.lacks, false, &FigureLack::was_recorded), 2);
+}
+
+TEST(RunFiguresTest, JumpsAreCountedAndTheirLackIsStated) {
+  RunDetail run = hand_made_run({0}, 1);
+  EXPECT_THAT(stamp_intervals(run).caption, HasSubstr("also has rare large jumps"));
+  run.cameras[0].frames[7].arrival_ms += 5;
+  const Figure figure = stamp_intervals(run);
+  EXPECT_THAT(figure.caption, HasSubstr("1 of 9 arrival intervals"));
+  EXPECT_THAT(figure.lacks, IsEmpty());
+}
+
 TEST(RunFiguresTest, ARigOfOneHostHasOnePanelOfHostsAndNoClocksToDraw) {
   const RunDetail run = hand_made_run({0}, 1);
   EXPECT_THAT(hosts(run).panels, SizeIs(1));
-  EXPECT_THAT(hosts(run).caption, HasSubstr("one host"));
+  EXPECT_THAT(hosts(run).caption, HasSubstr("also has a second host with cameras"));
   EXPECT_THAT(host_clocks(run).absent, HasSubstr("one host"));
   EXPECT_THAT(host_clocks(run).panels, IsEmpty());
 }

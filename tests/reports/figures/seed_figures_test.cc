@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/nonempty.h"
@@ -78,6 +80,68 @@ TEST(DigitalClocksTest, RowsAreThoseOfThePaperInItsOrder) {
   EXPECT_EQ(figure.photographs[1].label, "yoon2021_both");
   EXPECT_EQ(figure.photographs[2].label, "ntp_w32time");
   EXPECT_THAT(figure.caption, HasSubstr("8.3 ms"));
+}
+
+// Colour is exposed `later_ms` after depth, in frames of its own.
+void add_colour(RunDetail& run, double later_ms) {
+  for (evaluation::CameraDetail& camera : run.cameras) {
+    for (const evaluation::FrameDetail& frame : camera.frames) {
+      camera.others.push_back({.sensor_ms = frame.sensor_ms + later_ms,
+                               .exposure_start_ms = frame.exposure_start_ms + later_ms,
+                               .exposure_end_ms = frame.exposure_end_ms + later_ms});
+    }
+  }
+}
+
+TEST(DigitalClocksTest, ColourHasARowOfItsOwnOfTheNearestFrames) {
+  std::vector<RunDetail> runs = {hand_made_run({0, 0}, 1, "yoon2021_both")};
+  EXPECT_THAT(digital_clocks(runs).caption, HasSubstr("also has colour frames"));
+  add_colour(runs[0], 6);
+  const Figure figure = digital_clocks(runs);
+  ASSERT_THAT(figure.photographs, SizeIs(2));
+  EXPECT_EQ(figure.photographs[0].label, "yoon2021_both in genlock, depth");
+  EXPECT_EQ(figure.photographs[1].label, "yoon2021_both in genlock, colour");
+  // Pulse 8 is in the middle: depth is exposed from 159 to 161 ms, colour 6 ms later.
+  EXPECT_EQ(figure.photographs[0].photographs.at(1).readings.at(0).text, "00:00.158");
+  EXPECT_EQ(figure.photographs[1].photographs.at(1).readings.at(0).text, "00:00.158");
+  EXPECT_THAT(
+      figure.caption,
+      HasSubstr("colour: 2 of 2 show 00:00.158 (mostly), middles of the exposures within 0."));
+  EXPECT_THAT(figure.lacks, ::testing::IsEmpty());
+}
+
+TEST(DigitalClocksTest, AStreamThatNoPulseExposesIsNamed) {
+  std::vector<RunDetail> runs = {hand_made_run({0}, 2, "genlock")};
+  runs[0].stream = scenarios::StreamKind::kColour;
+  for (evaluation::CameraDetail& camera : runs[0].cameras) {
+    for (evaluation::FrameDetail& frame : camera.frames) frame.global_ms = evaluation::kNan;
+  }
+  EXPECT_THAT(digital_clocks(runs).absent,
+              HasSubstr("no trigger pulse exposes that stream in genlock; with /evaluation/stream "
+                        "\"depth\" both"));
+  runs[0].has_truth = false;
+  EXPECT_THAT(digital_clocks(runs).absent, HasSubstr("simbench record --scenario"));
+}
+
+TEST(DigitalClocksTest, RunsOfSeveralModesStandByMode) {
+  using scenarios::SyncMode;
+  std::vector<RunDetail> runs;
+  for (const auto& [mode, pipeline] :
+       {std::pair{SyncMode::kGenlock, "genlock"}, std::pair{SyncMode::kSlave, "yoon2021_both"},
+        std::pair{SyncMode::kFullSlave, "ntp_last_set"},
+        std::pair{SyncMode::kFullSlave, "yoon2021_both"}}) {
+    runs.push_back(hand_made_run({0}, 2, pipeline));
+    runs.back().sync_mode = mode;
+    add_colour(runs.back(), 1);
+  }
+  std::vector<std::string> labels;
+  for (const PhotographRow& row : digital_clocks(runs).photographs) labels.push_back(row.label);
+  EXPECT_THAT(labels,
+              ::testing::ElementsAre(
+                  "genlock in genlock, depth", "genlock in genlock, colour",
+                  "yoon2021_both in slave, depth", "yoon2021_both in slave, colour",
+                  "yoon2021_both in full_slave, depth", "yoon2021_both in full_slave, colour",
+                  "ntp_last_set in full_slave, depth", "ntp_last_set in full_slave, colour"));
 }
 
 TEST(DisplayClockTest, AReadingHoldsForAStep) {

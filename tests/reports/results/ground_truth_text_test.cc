@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 
 #include "reports/archive/archive.h"
@@ -11,6 +12,7 @@
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
+#include "reports/results/summary_document.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
 #include "tests/scratch_folder.h"
@@ -62,6 +64,30 @@ TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
               HasSubstr("| yoon2021_both | unverified | 2.00 ms |"));
 }
 
+// Without line breaks and what stands before the next line.
+std::string in_one_line(const std::string& text) {
+  return std::regex_replace(text, std::regex("\\s+"), " ");
+}
+
+// Every form and table says it, if and only if the scenario draws loads.
+TEST(GroundTruthText, LoadsOfPipelinesAreNotOfOneWorld) {
+  for (const bool draws : {true, false}) {
+    Results results = sample_results();
+    results.draws_load = draws;
+    const Document all = results_document(results, "");
+    const Document board = leaderboard_document(results, "");
+    const Document summary = summary_document(results, {}, {});
+    for (const std::string& text : {plain(all), markdown(all), latex(all), html(all.blocks),
+                                    plain(board), plain(summary), html(summary.blocks)}) {
+      const std::string line = in_one_line(text);
+      EXPECT_THAT(line, HasSubstr("Every pipeline meets the same worlds, one per seed"));
+      EXPECT_EQ(line.find("is drawn for each pipeline on its own") != std::string::npos, draws)
+          << text;
+    }
+    EXPECT_EQ(nlohmann::json::parse(json(results)).contains("own_load_of_pipelines"), draws);
+  }
+}
+
 TEST(GroundTruthText, GenlockCapturesAreVerified) {
   const std::string text = table_of(sample_genlock_results());
   EXPECT_THAT(text, HasSubstr("GenLock order"));
@@ -77,7 +103,7 @@ TEST(GroundTruthText, IndexErrorsOfUnverifiedSetsAreNotKnown) {
 
 TEST(GroundTruthText, CsvHasThreeMoreColumns) {
   const std::string text = csv(sample_rig_results());
-  EXPECT_THAT(text, HasSubstr(",wrong_locks,scored_seeds,ground_truth,verified,notes\n"));
+  EXPECT_THAT(text, HasSubstr(",message_time_ms,scored_seeds,ground_truth,verified,notes\n"));
   EXPECT_THAT(text, HasSubstr(",none,unverified,repetition 2: camera 7 was unplugged\n"));
   EXPECT_THAT(text, HasSubstr("; repetition 2: host2 is \"\"lost\"\", too\"\n"));
   EXPECT_THAT(text, HasSubstr(",720,,4,,21,"));  // neither pure sets nor index errors

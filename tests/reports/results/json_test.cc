@@ -57,6 +57,15 @@ TEST(ResultsJson, ARowHasEverything) {
     "disturbed_frames": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "exposure_drift_ppm": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "wrong_locks": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "rmdv_printed_sqrt_ms": {"median": 0.5, "p05": 0.25, "p95": 0.75, "values": [0.25, 0.75]},
+    "rmdv_printed_share": {"median": 0.25, "p05": 0.0, "p95": 0.5, "values": [0.0, 0.5]},
+    "t_l_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "t_t_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "t_d_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "session_passes": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "get_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "set_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "message_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "scored_seeds": 2, "ground_truth": "simulation", "verified": true, "notes": [],
     "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
                   "rmdv_attainable": false,
@@ -73,6 +82,16 @@ TEST(ResultsJson, SteeredExposuresSayWhatSteersThem) {
   EXPECT_EQ(rows[0]["disturbed_frames"],
             Json::parse(R"({"median": 12.5, "p05": 10.0, "p95": 15.0, "values": [10.0, 15.0]})"));
   EXPECT_FALSE(rows[1].contains("capture_alignment"));
+}
+
+TEST(ResultsJson, SessionsHaveTheirDelays) {
+  evaluation::Results results = sample_results();
+  set_sessions(results.rows[0]);
+  const Json row = Json::parse(json(results))["rows"][0];
+  EXPECT_EQ(row["t_l_ms"],
+            Json::parse(R"({"median": 3.5, "p05": 3.0, "p95": 4.0, "values": [3.0, 4.0]})"));
+  EXPECT_EQ(row["session_passes"]["median"], 1.5);
+  EXPECT_EQ(row["message_time_ms"]["values"], Json::parse("[3.5, 4.5]"));
 }
 
 TEST(ResultsJson, WhatDoesNotExistIsNull) {

@@ -34,6 +34,8 @@ pipeline        median           5-95 %        AMD  AMD is     [95 % interval]  
 yoon2021_both  2.00 ms  [1.50, 2.50] ms    2.44 ms  inside        50 % [32-68]  0.750 ms  [0.500, 1.00] ms    1.80 ms  not attainable
 free_running     750 s  [0.500, 1500] s          -  -                        -    250 ms     [200, 300] ms          -  -
 
+Published AMD, by its percentile [95 % interval]: 1 of 1 inside (yoon2021_both at 50 % [32-68]).
+
 Metrics that need true time
 
                absolute error   absolute error            host clock error   host clock error  exposure      sets:   sets:            frames  pulses
@@ -113,6 +115,8 @@ A fit, stated as such.
 |---|---:|---:|---:|---|---:|---:|---:|---:|---|
 | yoon2021_both | 2.00 ms | [1.50, 2.50] ms | 2.44 ms | inside | 50 % [32-68] | 0.750 ms | [0.500, 1.00] ms | 1.80 ms | not attainable |
 | free_running | 750 s | [0.500, 1500] s | - | - | - | 250 ms | [200, 300] ms | - | - |
+
+Published AMD, by its percentile [95 % interval]: 1 of 1 inside (yoon2021_both at 50 % [32-68]).
 
 ### Metrics that need true time
 
@@ -237,6 +241,22 @@ TEST(ResultsDocument, SteeredExposuresHaveABlock) {
   EXPECT_THAT(text,
               HasSubstr("yoon2021_both = yoon2021_both + nudge + regression_30 + yoon2021\n"));
   EXPECT_THAT(text, HasSubstr("free_running = free_running + raw_arrival + yoon2021\n"));
+}
+
+TEST(ResultsDocument, SessionsHaveABlockOfTheirRows) {
+  evaluation::Results results = sample_results();
+  EXPECT_THAT(plain(results_document(results, "")), Not(HasSubstr("Delays of the sessions")));
+  set_sessions(results.rows[0]);
+  const std::string text = plain(results_document(results, ""));
+  EXPECT_THAT(text, HasSubstr(R"(Delays of the sessions of Algorithms 1 and 2
+
+                   t_l              t_l      t_t              t_t      t_d
+pipeline        median           5-95 %   median           5-95 %   median      get      set  message  passes
+-------------  -------  ---------------  -------  ---------------  -------  -------  -------  -------  ------
+yoon2021_both  3.50 ms  [3.00, 4.00] ms  2.25 ms  [2.00, 2.50] ms  5.75 ms  1.00 us  4.50 ms  4.00 ms    1.50
+
+)"));
+  EXPECT_THAT(text, HasSubstr("t_l, t_t: network and time delay as the slaves measured them"));
 }
 
 TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {

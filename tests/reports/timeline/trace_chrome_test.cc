@@ -226,6 +226,27 @@ TEST(ChromeTrace, ClocksAreCountersWhereTheyChangeAndInstantsWhereTheyAreSet) {
   EXPECT_EQ(instants[0]["args"]["step_us"], -2.0);
 }
 
+TEST(ChromeTrace, ASessionIsASliceOfItsSlaveWithItsDelays) {
+  Trace trace;
+  trace.hosts = 2;
+  trace.sessions = {{.at = at_us(1000),
+                     .end = at_us(951000.5),
+                     .begin_steady = {},
+                     .last = {.slave = 1,
+                              .pass = 3,
+                              .t_l = Nanoseconds(3'012'345),
+                              .t_t = Nanoseconds(2'250'500),
+                              .t_d = Nanoseconds(5'262'845),
+                              .get = Nanoseconds(1'000),
+                              .set = Nanoseconds(4'500'000)}}};
+  const Json json = chrome(trace);
+  EXPECT_THAT(slices(json), ElementsAre("session: session 1000.0 950000.5"));
+  const Json session = of_phase(json, "X").front();
+  EXPECT_EQ(session["pid"], 3) << "the slave's process";
+  EXPECT_EQ(session["args"], Json::parse(R"({"passes": 3, "t_l_ms": 3.012345, "t_t_ms": 2.2505,
+    "t_d_ms": 5.262845, "get_ms": 0.001, "set_ms": 4.5})"));
+}
+
 TEST(ChromeTrace, AnEmptyTraceIsATrace) {
   EXPECT_TRUE(of_phase(chrome(Trace()), "XCistf").empty());
 }

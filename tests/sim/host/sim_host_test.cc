@@ -199,6 +199,9 @@ TEST(SimHostTest, ReportsGoToTheRecord) {
   EXPECT_EQ(world.record.exchanges[0].second.t1, host_ms(1));
   ASSERT_EQ(world.record.outcomes.size(), 1u);
   EXPECT_EQ(world.record.outcomes[0].passes, 2u);
+  world.host(1).report_delays({.slave = 1, .pass = 2, .t_l = from_ms(3)});
+  ASSERT_EQ(world.record.delays.size(), 1u);
+  EXPECT_EQ(world.record.delays[0].t_l, from_ms(3));
 }
 
 TEST(SimHostTest, RandomNumbersAreInTheUnitIntervalAndDifferBetweenHosts) {

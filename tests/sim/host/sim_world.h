@@ -30,12 +30,15 @@ class KeptRecord : public TestSink {
       exchanges.emplace_back(exchanged->host, exchanged->exchange);
     } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
       outcomes.push_back(*outcome);
+    } else if (const auto* reported = std::get_if<SessionDelays>(&event)) {
+      delays.push_back(*reported);
     }
   }
 
   std::vector<ClockAdjustment> adjustments;
   std::vector<std::pair<std::uint32_t, Exchange>> exchanges;
   std::vector<SyncOutcome> outcomes;
+  std::vector<SessionDelays> delays;
 };
 
 class SimWorld {

@@ -79,6 +79,7 @@ scenarios::Scenario world_of(unsigned seed) {
     s.faults = {scenarios::CameraVanishes{.camera = 1, .at_ms = 400, .duration_ms = 300},
                 scenarios::LateFirstFrame{.camera = 0, .duration_ms = 90}};
   }
+  s.usb.hold_mode_periods = one_of(0.0, 0.7, 1.0, 2.5);
   return s;
 }
 

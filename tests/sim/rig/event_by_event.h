@@ -100,8 +100,9 @@ class EventByEvent {
     SimFrame& frame = frames_[ticket];
     const SimStream& stream = cameras_.stream(frame.stream);
     frame.offered = engine_.now();
-    if (!buses_[stream.controller].submit(frame.offered.time_since_epoch(),
-                                          stream.index_on_controller, stream.bytes, ticket)) {
+    const Nanoseconds at = frame.offered.time_since_epoch();
+    if (!buses_[stream.controller].submit(at, stream.index_on_controller, stream.bytes, ticket,
+                                          stream.latest(at))) {
       return end(ticket, FrameFate::kLostOnUsb);
     }
     plan_transfer(stream.controller);

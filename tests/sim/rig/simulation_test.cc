@@ -32,6 +32,7 @@ class Collector final : public TestSink {
                           [this](const ClockAdjustment&) { ++adjustments; },
                           [this](const ExchangeEvent&) { ++exchanges; },
                           [this](const SyncOutcome& outcome) { outcomes.push_back(outcome); },
+                          [this](const SessionDelays& reported) { delays.push_back(reported); },
                           [](const auto&) {}},
                event);
   }
@@ -40,6 +41,7 @@ class Collector final : public TestSink {
   std::vector<FrameTruth> truths;
   std::map<std::size_t, std::vector<double>> host_errors_ms;
   std::vector<SyncOutcome> outcomes;
+  std::vector<SessionDelays> delays;
   int adjustments = 0;
   int exchanges = 0;
   std::int64_t pulses_expected = 0;
@@ -90,6 +92,12 @@ TEST(Simulation, EachDelayOfThePaperLeavesTheErrorThatItsFormulaSays) {
     record(two_unequal_hosts(), host_sync, result);
     ASSERT_EQ(result.outcomes.size(), 1u);
     EXPECT_TRUE(result.outcomes[0].synchronised) << result.outcomes[0].message;
+    ASSERT_EQ(result.delays.size(), 1u);
+    EXPECT_NEAR(to_ms(result.delays[0].t_l), t_l, 1e-4) << host_sync;
+    EXPECT_NEAR(to_ms(result.delays[0].t_t), t_t, 1e-4) << host_sync;
+    EXPECT_NEAR(to_ms(result.delays[0].t_d), t_d, 1e-4) << host_sync;
+    EXPECT_NEAR(to_ms(result.delays[0].get), 0, 1e-4) << host_sync;
+    EXPECT_NEAR(to_ms(result.delays[0].set), 4, 1e-4) << host_sync;
     ASSERT_EQ(result.host_errors_ms[1].size(), 90u);
     for (const double error_ms : result.host_errors_ms[1]) {
       EXPECT_NEAR(error_ms, t_d - kNeededMs, 1e-4) << host_sync;

@@ -125,5 +125,46 @@ TEST(StampIntervals, ArrivalsJumpInTheNominalWorldsAlone) {
   }
 }
 
+// Fig. 3, in the fitted world: the clocks of cameras have no common origin, while the arrivals of a
+// pulse differ by their jitter alone, Exp(m) of each camera. The range of three such is 1.5 m on
+// average, sqrt(1.25) m in its standard deviation.
+TEST(StampIntervals, OfOneHostArrivalsCoincideAndSensorStampsDoNot) {
+  const scenarios::Scenario scenario = scenarios::load_scenario("3cam_1host_30fps");
+  const double jitter_ms = scenario.usb.delivery_jitter_transfers *
+                           scenario.scored_stream()->image_bytes() * 1e-3 /
+                           scenario.usb.bandwidth_mb_per_s;
+  KeptLists kept;
+  run_world(scenario, nullptr, kept);
+  std::map<std::int64_t, std::vector<double>> arrivals_ms;
+  for (const KeptLists::Frame& frame : kept.frames) {
+    arrivals_ms[frame.truth.pulse].push_back(ms_of(frame.record.arrival));
+  }
+  double range_ms = 0;
+  for (const auto& [pulse, of_pulse] : nonempty(arrivals_ms)) {
+    ASSERT_EQ(of_pulse.size(), 3U) << pulse;
+    const auto [least, most] = std::minmax_element(of_pulse.begin(), of_pulse.end());
+    range_ms += *most - *least;
+  }
+  const auto pulses = static_cast<double>(arrivals_ms.size());
+  EXPECT_NEAR(range_ms / pulses, 1.5 * jitter_ms, 5 * jitter_ms * std::sqrt(1.25 / pulses));
+
+  // Two origins U(0, e) are e/3 apart on average, e/sqrt(18) in the standard deviation.
+  const double epoch_ms = scenario.cameras.clock_epoch_max_ms;
+  double apart_ms = 0;
+  constexpr int kSeeds = 100;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    KeptLists of_seed;
+    run_world(scenarios::load_scenario("3cam_1host_30fps",
+                                       {{"/timeline/frames", "1"}, {"/timeline/warm_up_ms", "0"}}),
+              nullptr, of_seed, seed);
+    std::map<std::uint32_t, double> first_ms;
+    for (const KeptLists::Frame& frame : of_seed.frames) {
+      first_ms.emplace(frame.record.camera, frame.record.sensor.us * 1e-3);
+    }
+    apart_ms += std::abs(first_ms.at(1) - first_ms.at(0)) / kSeeds;
+  }
+  EXPECT_NEAR(apart_ms, epoch_ms / 3, 5 * epoch_ms / std::sqrt(18.0 * kSeeds)) << "seeds 1-100";
+}
+
 }  // namespace
 }  // namespace simbench::sim

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "algorithms/host_sync/messages.h"
@@ -135,6 +136,82 @@ TEST(Yoon2021, ReportsTheExchangeOnTheClocksThatReadIt) {
   EXPECT_EQ(*exchange.t4 - *exchange.t1, 2 * one_way + kSet);
   // The slave has T_m from a quarter into its call on, and reads its clock at the end of the call.
   EXPECT_EQ(*exchange.t3 - *exchange.t1, kSet - kSetEffective);
+}
+
+// One session over a link of this latency; what its slave reports.
+SessionDelays delays_of(const Yoon2021Settings& settings, Nanoseconds latency) {
+  ScriptWorld world(2);
+  use_common_costs(world, 2, latency);
+  Yoon2021 algorithm(settings);
+  world.run(algorithm);
+  EXPECT_TRUE(world.host(0).delays.empty());
+  EXPECT_EQ(world.host(1).delays.size(), 1U);
+  return world.host(1).delays.at(0);
+}
+
+TEST_P(Yoon2021AtLatency, TheSlaveReportsWhatItMeasuredAndAdded) {
+  const SessionDelays delays = delays_of(settings_for(true, true), latency());
+  EXPECT_EQ(delays.slave, 1U);
+  EXPECT_EQ(delays.pass, 1U);
+  EXPECT_EQ(delays.t_l, kSend);
+  EXPECT_EQ(delays.t_t, kSet / 2);
+  EXPECT_EQ(delays.t_d, kSend + kSet / 2);
+  EXPECT_EQ(delays.get, Nanoseconds(0));
+  EXPECT_EQ(delays.set, kSet);
+  const Yoon2021Settings settings;
+  // From READY's reading: the stamps, the calls, MEASURED, SET_TIME and the step.
+  EXPECT_EQ(delays.end - delays.begin, settings.stamps * kSend + settings.clock_calls * kSet +
+                                           2 * (kSend + latency() + kWake) + kSet);
+}
+
+TEST_P(Yoon2021AtLatency, TheIntendedDelayIsHalfTheRoundTrip) {
+  Yoon2021Settings settings = settings_for(true, false);
+  settings.ask_for_stamps = true;
+  EXPECT_EQ(delays_of(settings, latency()).t_l, kSend + latency() + kWake);
+}
+
+TEST(Yoon2021, WhatIsMeasuredIsReportedWhateverIsAdded) {
+  for (const bool network : {false, true}) {
+    for (const bool time : {false, true}) {
+      const SessionDelays delays = delays_of(settings_for(network, time), from_ms(1));
+      EXPECT_EQ(delays.t_l, kSend);
+      EXPECT_EQ(delays.t_t, kSet / 2);
+      EXPECT_EQ(delays.t_d,
+                (network ? kSend : Nanoseconds(0)) + (time ? kSet / 2 : Nanoseconds(0)));
+    }
+  }
+}
+
+// A threshold that is never met: each pass is reported.
+TEST(Yoon2021, EachPassIsReported) {
+  ScriptWorld world(2);
+  use_common_costs(world, 2, from_ms(5));
+  Yoon2021Settings settings = settings_for(true, true);
+  settings.threshold = from_ms(1);
+  settings.pass_limit = 3;
+  Yoon2021 algorithm(settings);
+  world.run(algorithm);
+  ASSERT_FALSE(world.host(0).outcomes.at(0).synchronised);
+  const std::vector<SessionDelays>& delays = world.host(1).delays;
+  ASSERT_EQ(delays.size(), 3U);
+  for (std::uint32_t pass = 1; pass <= 3; ++pass) EXPECT_EQ(delays[pass - 1].pass, pass);
+  EXPECT_LT(delays[0].end, delays[1].begin);
+}
+
+// What is lost before the slave has measured leaves nothing to report.
+TEST(Yoon2021, APassThatIsCutOffIsNotReported) {
+  ScriptWorld world(2);
+  use_common_costs(world, 2, from_ms(1));
+  world.script_link(0, 1, [lost = false](std::size_t, const Bytes& bytes) mutable {
+    const auto message = decode_session_message(bytes);
+    const bool loses = message->kind == MessageKind::kStamp && !std::exchange(lost, true);
+    return loses ? std::vector<Nanoseconds>() : std::vector{from_ms(1)};
+  });
+  Yoon2021 algorithm(settings_for(true, true));
+  world.run(algorithm);
+  EXPECT_EQ(world.host(0).outcomes.at(0).passes, 2U);
+  ASSERT_EQ(world.host(1).delays.size(), 1U);
+  EXPECT_EQ(world.host(1).delays[0].pass, 2U);
 }
 
 TEST(Yoon2021, AThresholdOfExactlyTheDelayIsMet) {
