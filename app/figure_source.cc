@@ -191,7 +191,7 @@ class FigureMaker {
     }
   }
 
-  // The same rig in several sync modes.
+  // Adds the runs of a rig in several sync modes.
   void add_clocks_of(const std::vector<ModeWorld>& modes, std::uint64_t seed) {
     std::vector<RunDetail> runs;
     for (const ModeWorld& mode : modes) {

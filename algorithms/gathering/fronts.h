@@ -112,7 +112,8 @@ class FrontMatcher {
  public:
   static constexpr std::uint32_t kFirstQueue = 64;
 
-  // Those stated are at least 1. `queue_limit` counts the front; empty: any number may wait.
+  // `sources` and a stated `queue_limit` are at least 1. The limit counts the front; without one,
+  // any number may wait.
   FrontMatcher(std::uint32_t sources, std::int64_t tolerance,
                std::optional<std::uint32_t> queue_limit);
 

@@ -43,7 +43,7 @@ const std::vector<PictureOfThePaper>& pictures_of_the_paper() {
   return pictures;
 }
 
-// Those of one recording.
+// Returns the figures that one recording is enough for.
 std::vector<FigureEntry> entries_of_a_run() {
   using enum FigureScope;
   return {

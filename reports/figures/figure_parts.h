@@ -24,7 +24,8 @@ Figure of_run(std::string_view id, const evaluation::RunDetail& run);
 // The figure with nothing to draw, and the reason.
 Figure absent(Figure figure, std::string why);
 
-// The same for what only a simulated world knows; the reason has the command that records it.
+// Returns it with nothing to draw, since only a simulated world knows `what`; the reason has the
+// command that records it.
 Figure without_truth(Figure figure, std::string_view what);
 // The figure, of whose caption this is the last statement so far.
 void add_lack(Figure& figure, FigureLack lack);

@@ -76,7 +76,7 @@ std::vector<std::string> not_reached(const PaperRun& run);
 
 Document paper_document(const PaperResults& results);
 
-// The same for programs:
+// Returns the page as JSON, for programs:
 //
 //   {"schema_version": 1, "version", "commit",
 //    "runs": [{"table": "Table 2", "rate_hz": 15, "printed": [{"pipeline", "metric", "printed",

@@ -40,7 +40,7 @@ class PaperStatements : public ProgramTest {
     return problems;
   }
 
-  // Those of a page that has only this line.
+  // Returns the problems of a page that has only this line.
   std::vector<std::string> problems_of(const std::string& where, const std::string& test) {
     const StatementPage page =
         read_statements("| 1 | eq. (1) | it is so | " + where + " | " + test + " |\n");

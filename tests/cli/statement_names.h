@@ -26,7 +26,7 @@ class StatementNames {
 
   // What is wrong with a name in the column "in simbench"; empty if nothing.
   std::string problem_of_place(const std::string& name);
-  // The same for the column "test".
+  // What is wrong with a name in the column "test"; empty if nothing.
   std::string problem_of_test(const std::string& name);
 
  private:
