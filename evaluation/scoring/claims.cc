@@ -180,8 +180,7 @@ constexpr Statement kStatements[] = {
      kBothAlone, 0, kSessionDelays, messages_exceed_calls, Needs::kNothing},
     {"C12",
      "the paper's criterion of being synchronised, AMD below the interval between frames, is met "
-     "with "
-     "time, network and both, and not without synchronisation",
+     "with time, network and both, and not without synchronisation",
      kEveryPipeline, 0, "", below_interval}};
 
 struct AcrossStatement {

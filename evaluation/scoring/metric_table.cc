@@ -57,45 +57,41 @@ constexpr Metric packets_of_captures() {
   return metric;
 }
 
-// Captures have values of these where their exposures are steered.
-constexpr Metric alignment_metric(const char* id, const char* title, const char* unit,
-                                  SeriesPlace kept) {
+// A metric that older archives may lack.
+constexpr Metric new_metric(const char* id, const char* title, const char* unit, SeriesPlace kept) {
   Metric metric;
   metric.id = id;
   metric.title = title;
   metric.unit = unit;
-  metric.needs = Needs::kTruth;
   metric.place = kept;
+  metric.is_new = true;
+  return metric;
+}
+
+// Captures have values of these where their exposures are steered.
+constexpr Metric alignment_metric(const char* id, const char* title, const char* unit,
+                                  SeriesPlace kept) {
+  Metric metric = new_metric(id, title, unit, kept);
+  metric.needs = Needs::kTruth;
   metric.csv = CsvForm::kValueAtEnd;
   metric.sweep = id;
-  metric.is_new = true;
   return metric;
 }
 
 // To look at: in results.json, tidy CSV, sweep.csv and /published_figures, not in tables.
 constexpr Metric unshown(const char* id, const char* title, const char* unit, SeriesPlace kept) {
-  Metric metric;
-  metric.id = id;
-  metric.title = title;
-  metric.unit = unit;
+  Metric metric = new_metric(id, title, unit, kept);
   metric.better = Better::kNeither;
-  metric.place = kept;
   metric.sweep = id;
-  metric.is_new = true;
   return metric;
 }
 
 // Rows whose host synchronisation has sessions with delays have values of these.
 constexpr Metric session_metric(const char* id, const char* title, const char* unit,
                                 SeriesPlace kept) {
-  Metric metric;
-  metric.id = id;
-  metric.title = title;
-  metric.unit = unit;
+  Metric metric = new_metric(id, title, unit, kept);
   metric.better = Better::kNeither;
-  metric.place = kept;
   metric.csv = CsvForm::kValueAtEnd;
-  metric.is_new = true;
   return metric;
 }
 

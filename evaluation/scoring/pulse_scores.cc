@@ -196,10 +196,11 @@ void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScor
     PulseScore& pulse = score.pulses.emplace_back(PulseScore{.pulse = table.pulse_of(row)});
     if (table.sources() < 2) continue;  // the stamp of a single camera has no range
     pulse.spread_ms = spread_ms(stamps);
-    pulse.deviation_ms = deviation_ms(stamps, scoring.median, workspace);
+    const Differences differences = differences_from_median(stamps, scoring.median, workspace);
+    pulse.deviation_ms = differences.deviation_ms;
     amd.add(pulse.spread_ms);
     rmdv.add(pulse.deviation_ms);
-    printed.add(mean_difference_ms(stamps, scoring.median, workspace));
+    printed.add(differences);
     below_half_period.add(pulse.spread_ms < to_ms(scoring.period) / 2 ? 1 : 0);
     hosts.add_pulse(stamps);
   }

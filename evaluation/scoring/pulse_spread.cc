@@ -27,35 +27,28 @@ double spread_ms(std::span<const std::int64_t> stamps_ns) {
   return static_cast<double>(*greatest - *least) * kMsPerNs;
 }
 
-double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
-                    std::vector<std::int64_t>& workspace) {
+Differences differences_from_median(std::span<const std::int64_t> stamps_ns, MedianKind kind,
+                                    std::vector<std::int64_t>& workspace) {
   workspace.assign(stamps_ns.begin(), stamps_ns.end());
   const std::int64_t base = stamps_ns.front();
   const double median = median_above(base, kind, workspace);
   // Summed in the given order, so that the selection algorithm cannot change the result.
   double squares = 0;
+  double sum = 0;
   for (const std::int64_t stamp : stamps_ns) {
     const double difference = static_cast<double>(stamp - base) - median;
     squares += difference * difference;
+    sum += difference;
   }
-  return std::sqrt(squares / static_cast<double>(stamps_ns.size())) * kMsPerNs;
+  const auto count = static_cast<double>(stamps_ns.size());
+  return {.deviation_ms = std::sqrt(squares / count) * kMsPerNs, .mean_ms = sum / count * kMsPerNs};
 }
 
-double mean_difference_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
-                          std::vector<std::int64_t>& workspace) {
-  workspace.assign(stamps_ns.begin(), stamps_ns.end());
-  const std::int64_t base = stamps_ns.front();
-  const double median = median_above(base, kind, workspace);
-  double sum = 0;
-  for (const std::int64_t stamp : stamps_ns) sum += static_cast<double>(stamp - base) - median;
-  return sum / static_cast<double>(stamps_ns.size()) * kMsPerNs;
-}
-
-void PrintedRmdv::add(double mean_difference_ms) {
+void PrintedRmdv::add(const Differences& pulse) {
   ++pulses_;
-  if (mean_difference_ms < 0) return;
+  if (pulse.mean_ms < 0) return;
   ++real_;
-  sum_ += std::sqrt(mean_difference_ms);
+  sum_ += std::sqrt(pulse.mean_ms);
 }
 
 double PrintedRmdv::mean_sqrt_ms() const {

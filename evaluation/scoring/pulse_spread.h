@@ -15,7 +15,8 @@
 //
 //   const std::vector<std::int64_t> stamps = {0, 1'000'000, 3'000'000};
 //   spread_ms(stamps);                                            // 3
-//   deviation_ms(stamps, MedianKind::kUpperMiddle, workspace);    // sqrt((1 + 0 + 4) / 3)
+//   differences_from_median(stamps, MedianKind::kUpperMiddle, workspace)
+//       .deviation_ms;                                            // sqrt((1 + 0 + 4) / 3)
 #pragma once
 
 #include <cstddef>
@@ -32,23 +33,26 @@ using scenarios::MedianKind;
 // Returns the largest minus the smallest. `stamps_ns` must not be empty. O(n).
 double spread_ms(std::span<const std::int64_t> stamps_ns);
 
-// Returns the root mean square of the differences from the median. `stamps_ns` must not be empty.
-// `workspace` is overwritten; kept by the caller, it saves an allocation per pulse. O(n).
-double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
-                    std::vector<std::int64_t>& workspace);
+// What the stamps of a pulse differ by from their median.
+struct Differences {
+  double deviation_ms = 0;  // root mean square
+  // Signed mean, which is the mean less the median: the radicand of eq. (4) as printed. For n
+  // stamps it is from -1/2 to (n/2 - 1)/n of the spread, and negative where the mean is below the
+  // median: in half of the pulses of a symmetric law, or more, as the upper-middle element is above
+  // the middle.
+  double mean_ms = 0;
+};
 
-// Returns the mean of the signed differences from the median, which is the mean less the median:
-// the radicand of eq. (4) as printed. For n stamps it is from -1/2 to (n/2 - 1)/n of the spread,
-// and negative where the mean is below the median: in half of the pulses of a symmetric law, or
-// more, as the upper-middle element is above the middle. Else as deviation_ms().
-double mean_difference_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
-                          std::vector<std::int64_t>& workspace);
+// `stamps_ns` must not be empty. `workspace` is overwritten; kept by the caller, it saves an
+// allocation per pulse. O(n).
+Differences differences_from_median(std::span<const std::int64_t> stamps_ns, MedianKind kind,
+                                    std::vector<std::int64_t>& workspace);
 
 // Eq. (4) as printed, over pulses. A pulse with a negative radicand has no real root and is left
 // out; real_share() tells how many are not.
 class PrintedRmdv {
  public:
-  void add(double mean_difference_ms);
+  void add(const Differences& pulse);
   // The mean root, in sqrt(ms); NaN without a pulse that has one.
   double mean_sqrt_ms() const;
   // Pulses that have one, of all; NaN without pulses.

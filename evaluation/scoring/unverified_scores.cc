@@ -73,8 +73,9 @@ void UnverifiedScores::on_set(std::span<const GatherFrame> set) {
       sets_.emplace_back(PulseScore{.pulse = static_cast<std::int64_t>(sets_.size())});
   if (host_of_camera_.size() > 1) {  // the stamp of a single camera has no range
     scored.spread_ms = spread_ms(stamps_ns_);
-    scored.deviation_ms = deviation_ms(stamps_ns_, median_, sorted_);
-    printed_.add(mean_difference_ms(stamps_ns_, median_, sorted_));
+    const Differences differences = differences_from_median(stamps_ns_, median_, sorted_);
+    scored.deviation_ms = differences.deviation_ms;
+    printed_.add(differences);
   }
   if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now());
 }

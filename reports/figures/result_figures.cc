@@ -157,8 +157,7 @@ std::string trend_text(const std::vector<RowRef>& rows, std::uint64_t seed) {
   if (pipeline.empty()) return "";
   return fmt::format(
       " Over the recording the AMD of {} changes most along its least-squares line, by {:+.1f} % "
-      "of "
-      "its mean.",
+      "of its mean.",
       pipeline, largest * 100);
 }
 

@@ -14,7 +14,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 double deviation(const std::vector<std::int64_t>& stamps, MedianKind kind) {
   std::vector<std::int64_t> workspace;
-  return deviation_ms(stamps, kind, workspace);
+  return differences_from_median(stamps, kind, workspace).deviation_ms;
 }
 
 // `low` stamps at zero, the others at one second.
@@ -75,7 +75,7 @@ TEST(MetricsTest, StepsAttainTheBoundAndNoneExceedsIt) {
 
 double mean_difference(const std::vector<std::int64_t>& stamps, MedianKind kind) {
   std::vector<std::int64_t> workspace;
-  return mean_difference_ms(stamps, kind, workspace);
+  return differences_from_median(stamps, kind, workspace).mean_ms;
 }
 
 TEST(PrintedRmdvTest, TheRadicandIsTheMeanLessTheMedian) {
@@ -104,12 +104,12 @@ TEST(PrintedRmdvTest, APulseWithoutARealRootIsLeftOutAndCounted) {
   PrintedRmdv printed;
   EXPECT_TRUE(std::isnan(printed.mean_sqrt_ms()));
   EXPECT_TRUE(std::isnan(printed.real_share()));
-  printed.add(-4);
+  printed.add({.mean_ms = -4});
   EXPECT_TRUE(std::isnan(printed.mean_sqrt_ms()));
   EXPECT_DOUBLE_EQ(printed.real_share(), 0);
-  printed.add(4);
-  printed.add(0);
-  printed.add(9);
+  printed.add({.mean_ms = 4});
+  printed.add({.mean_ms = 0});
+  printed.add({.mean_ms = 9});
   EXPECT_DOUBLE_EQ(printed.mean_sqrt_ms(), (2.0 + 0 + 3) / 3);
   EXPECT_DOUBLE_EQ(printed.real_share(), 0.75);
 }
