@@ -16,6 +16,7 @@
 #include "app/sync_mode_worlds.h"
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/jobs.h"
+#include "evaluation/run/leaderboard.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
 #include "recording/collected.h"
@@ -310,6 +311,17 @@ bool has_seed_details(const Archive& archive) {
 }
 
 }  // namespace
+
+bool is_of_one_pipeline(const FigureEntry& entry) {
+  return entry.scope == FigureScope::kRun || entry.scope == FigureScope::kPipeline;
+}
+
+std::vector<std::string> usual_pipelines(const FigureEntry& entry,
+                                         const std::vector<std::string>& known) {
+  if (!is_of_one_pipeline(entry) || known.empty()) return {};
+  if (std::ranges::count(known, entry.pipeline) > 0) return {entry.pipeline};
+  return {evaluation::usual_pipeline(known)};
+}
 
 ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
                                const evaluation::Progress& progress) {

@@ -42,6 +42,12 @@ struct FigureOptions {
   bool all_sync_modes = false;
 };
 
+bool is_of_one_pipeline(const reports::FigureEntry& entry);
+// The pipelines that a figure shows where nobody names any: all (empty), or of a figure of one
+// pipeline that of the paper's figure, else the usual one. `known`: those that there are.
+std::vector<std::string> usual_pipelines(const reports::FigureEntry& entry,
+                                         const std::vector<std::string>& known);
+
 struct ArchiveFigures {
   // In the order of the catalogue; figures of one id by seed, then by pipeline as in the archive.
   // Figures over all seeds come first without, then with a pipeline.

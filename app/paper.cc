@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstddef>
 #include <utility>
 
+#include "algorithms/ports/assert.h"
 #include "app/answer.h"
 #include "app/figure_source.h"
 #include "app/interrupt.h"
+#include "recording/collected.h"
 #include "reports/paper/paper_page.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
@@ -48,35 +51,51 @@ PaperRun run_rate(const char* name, const char* table, const PaperOptions& optio
   return run;
 }
 
-// The ids of the figures that the paper has, or of those about results alone that it has not.
-std::vector<std::string> figure_ids(bool of_paper) {
+// The ids of the figures about results alone that the paper has not.
+std::vector<std::string> other_result_figures() {
   std::vector<std::string> ids;
   for (const FigureEntry& entry : reports::figure_catalogue()) {
-    const bool is_of_paper = !entry.paper.empty();
     const bool is_of_results = entry.scope == reports::FigureScope::kResults;
-    if (is_of_paper == of_paper && (of_paper || is_of_results)) ids.push_back(entry.id);
+    if (entry.paper.empty() && is_of_results) ids.push_back(entry.id);
   }
   return ids;
 }
 
-// Alternatives of one figure have one id, so that of another rate gets another.
-void name_rate(const PaperRun& run, Figure& figure) {
-  const double rate_hz = run.scenario.trigger.rate_hz;
-  figure.id += fmt::format("_{:g}fps", rate_hz);
-  figure.title += fmt::format(", {:g} fps", rate_hz);
+// One of the paper's figures, by its id or by the number that it has at one rate, of the world that
+// it is drawn of by itself.
+Figure paper_figure(const FigureEntry& entry, const std::string& name, std::uint64_t seed) {
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(reports::scenario_of_figure(entry, name), {});
+  const std::vector<std::string> known = collected(scenario.pipelines, &scenarios::Pipeline::name);
+  const FigureOptions options = {.seeds = {seed},
+                                 .pipelines = usual_pipelines(entry, known),
+                                 .figures = {name},
+                                 .all_sync_modes = true};
+  std::vector<Figure> drawn = scenario_figures(scenario, options, 1).figures;
+  SIMBENCH_ASSERT(drawn.size() == 1, "one figure of one seed and pipeline");
+  return std::move(drawn.front());
 }
 
-void add_figures(const PaperRun& run, Archive& archive, const evaluation::Progress& progress,
-                 std::vector<Figure>& figures) {
-  for (Figure& figure : archive_figures(archive, {.figures = figure_ids(true)}, progress).figures) {
-    name_rate(run, figure);
-    figures.push_back(std::move(figure));
+std::vector<Figure> paper_figures(std::uint64_t seed, const evaluation::Progress& progress) {
+  std::vector<Figure> figures;
+  const std::vector<FigureEntry>& catalogue = reports::figure_catalogue();
+  for (std::size_t done = 0; done < catalogue.size(); ++done) {
+    const FigureEntry& entry = catalogue[done];
+    if (progress) progress(done, catalogue.size());
+    for (const reports::PaperRate& rate : entry.rates) {
+      figures.push_back(paper_figure(entry, rate.alias, seed));
+      figures.back().id = rate.alias;  // alternatives of one figure have one id
+    }
+    if (!entry.paper.empty() && entry.rates.empty()) {
+      figures.push_back(paper_figure(entry, entry.id, seed));
+    }
   }
+  return figures;
 }
 
 reports::ReportedArchive reported(const PaperRun& run, Archive archive) {
   reports::ReportedArchive all{.archive = std::move(archive)};
-  all.figures = archive_figures(all.archive, {.figures = figure_ids(false)}).figures;
+  all.figures = archive_figures(all.archive, {.figures = other_result_figures()}).figures;
   all.answer = run_answer(run.results, run.scenario, nullptr);
   return all;
 }
@@ -103,11 +122,10 @@ PaperFolder::PaperFolder(const std::string& path, std::vector<std::string> comma
 void PaperFolder::write(PaperResults& results, const evaluation::Progress& progress) {
   provenance_.finished = std::chrono::system_clock::now();
   std::vector<reports::ReportedArchive> archives;
-  std::uint64_t half = 0;
+  results.figures = paper_figures(results.at_15_fps.results.first_seed, progress);
   for (const PaperRun* run : {&results.at_15_fps, &results.at_45_fps}) {
     Archive archive = reports::kept_archive(path_ + "/" + run->scenario.name, run->results,
                                             run->scenario, provenance_);
-    add_figures(*run, archive, half_of(progress, half++), results.figures);
     archives.push_back(reported(*run, std::move(archive)));
   }
   output_.file(reports::kManifest)

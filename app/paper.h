@@ -12,8 +12,7 @@
 //   18cam_6host_15fps/, 18cam_6host_45fps/   the result archive of each rate
 //                           (reports/archive/archive.h), for report, figure and compare
 //
-// Cost: a run of each pipeline of both scenarios for every seed, and one more for each pipeline at
-// the first seed for the figures.
+// Cost: a run of each pipeline of both scenarios for every seed, and some 20 runs for the figures.
 //
 // Errors: those of evaluation::evaluate() and archive_figures(), reports::OutputError.
 #pragma once
@@ -43,7 +42,8 @@ class PaperFolder {
   // `command`: argv.
   PaperFolder(const std::string& path, std::vector<std::string> command);
 
-  // Draws the paper's figures into `results`, at the first seed of each rate, and writes all of it.
+  // Draws the paper's figures into `results`, each of the world that the catalogue has for it, at
+  // the first seed, and writes all of it.
   // `progress` may be null.
   void write(reports::PaperResults& results, const evaluation::Progress& progress);
 

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "bags/bag.h"
 #include "scenarios/input_file.h"
 
 namespace simbench::bags {

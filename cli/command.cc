@@ -263,11 +263,6 @@ std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& va
   return overrides;
 }
 
-std::string usual_pipeline(const std::vector<std::string>& names) {
-  constexpr const char* kUsual = "yoon2021_both";
-  return std::find(names.begin(), names.end(), kUsual) != names.end() ? kUsual : names.front();
-}
-
 void refuse(const std::string& option, const std::string& text) {
   throw CLI::ValidationError(option, text);
 }

@@ -127,10 +127,6 @@ class Command {
 
 std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);
 
-// The default of commands about one pipeline: yoon2021_both if it is among the names, else the
-// first.
-std::string usual_pipeline(const std::vector<std::string>& names);
-
 // Ends parsing with the message "OPTION: text" and a pointer to the help.
 [[noreturn]] void refuse(const std::string& option, const std::string& text);
 

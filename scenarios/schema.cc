@@ -80,6 +80,7 @@ std::string allowed(const json& node) {
                                         node.value("maxLength", 0))
                           : "text");
     }
+    if (has_type(node, "null")) kinds.emplace_back("null");
   }
   return fmt::format("{}", fmt::join(kinds, node.contains("enum") ? ", " : " or "));
 }

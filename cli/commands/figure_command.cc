@@ -126,23 +126,16 @@ FileKind file_kind(const std::string& output) {
                   output));
 }
 
-bool is_of_one_pipeline(const FigureEntry& entry) {
-  return entry.scope == FigureScope::kRun || entry.scope == FigureScope::kPipeline;
-}
-
 // The pipelines to run: all, or one for a figure of one pipeline. `known`: those that there are.
 std::vector<std::string> chosen_pipelines(const FigureCommand& command, const FigureEntry& entry,
                                           const std::vector<std::string>& known) {
-  if (!is_of_one_pipeline(entry)) return command.pipelines;
-  if (command.pipelines.size() > 1) {
+  if (app::is_of_one_pipeline(entry) && command.pipelines.size() > 1) {
     throw InputError(
         fmt::format("--pipelines: found {} names, allowed: one, because {} shows one "
                     "pipeline",
                     command.pipelines.size(), entry.id));
   }
-  if (!command.pipelines.empty() || known.empty()) return command.pipelines;
-  if (std::ranges::count(known, entry.pipeline) > 0) return {entry.pipeline};
-  return {usual_pipeline(known)};
+  return command.pipelines.empty() ? app::usual_pipelines(entry, known) : command.pipelines;
 }
 
 app::FigureOptions options_of(const FigureCommand& command, const FigureEntry& entry,

@@ -13,6 +13,7 @@
 #include "cli/commands/commands.h"
 #include "cli/program_options.h"
 #include "cli/progress.h"
+#include "evaluation/run/leaderboard.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "recording/collected.h"
 #include "reports/text/output_file.h"
@@ -67,7 +68,7 @@ evaluation::PipelineChoice choose(const scenarios::Scenario& scenario, std::stri
   if (name.empty()) {
     const std::vector<std::string> names =
         collected(scenario.pipelines, &scenarios::Pipeline::name);
-    name = usual_pipeline(names);
+    name = evaluation::usual_pipeline(names);
   }
   return evaluation::choose_pipelines(scenario, {name}).front();
 }

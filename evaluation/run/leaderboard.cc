@@ -61,6 +61,12 @@ bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
 
 }  // namespace
 
+std::string usual_pipeline(const std::vector<std::string>& names) {
+  SIMBENCH_ASSERT(!names.empty(), "there is a pipeline");
+  const auto paper = std::ranges::find(names, kPaperPipeline);
+  return paper != names.end() ? *paper : names.front();
+}
+
 Series paired_ratio(const Series& numerator, const Series& denominator) {
   SIMBENCH_ASSERT(numerator.values.size() == denominator.values.size(),
                   "paired series have the same seeds");

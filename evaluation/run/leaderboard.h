@@ -20,6 +20,10 @@ namespace simbench::evaluation {
 
 inline constexpr std::string_view kPaperPipeline = "yoon2021_both";
 
+// What is shown of one pipeline where nobody names it: the paper's if it is among the names, else
+// the first. `names` must not be empty.
+std::string usual_pipeline(const std::vector<std::string>& names);
+
 // Ratios of one row to another; NaN without the other row.
 struct PairedRatios {
   Series error;

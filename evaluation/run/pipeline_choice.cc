@@ -364,6 +364,8 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
       scenario.cameras.sync_mode == scenarios::SyncMode::kGenlock && !choice.is_steered();
   setup.is_steered = choice.is_steered() || scenario.cameras.frame_control.has_value();
   setup.unsteady_start = from_ms(scenario.cameras.unstable_start_ms);
+  setup.has_depth_and_colour = scenario.cameras.stream(StreamKind::kDepth) != nullptr &&
+                               scenario.cameras.stream(StreamKind::kColour) != nullptr;
   setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
   if (const auto frames = scenario.evaluation.gathering_queue_frames) {
     setup.gathering_queue_frames = static_cast<std::uint32_t>(*frames);

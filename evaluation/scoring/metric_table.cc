@@ -78,6 +78,16 @@ constexpr Metric alignment_metric(const char* id, const char* title, const char*
   return metric;
 }
 
+// Captures have values of these where cameras have depth and colour. No pipeline makes them better.
+constexpr Metric colour_metric(const char* id, const char* title, SeriesPlace kept) {
+  Metric metric = new_metric(id, title, "ms", kept);
+  metric.better = Better::kNeither;
+  metric.needs = Needs::kTruth;
+  metric.csv = CsvForm::kValueAtEnd;
+  metric.sweep = id;
+  return metric;
+}
+
 // To look at: in results.json, tidy CSV, sweep.csv and /published_figures, not in tables.
 constexpr Metric unshown(const char* id, const char* title, const char* unit, SeriesPlace kept) {
   Metric metric = new_metric(id, title, unit, kept);
@@ -92,6 +102,7 @@ constexpr Metric session_metric(const char* id, const char* title, const char* u
   Metric metric = new_metric(id, title, unit, kept);
   metric.better = Better::kNeither;
   metric.csv = CsvForm::kValueAtEnd;
+  metric.sweep = id;
   return metric;
 }
 
@@ -322,6 +333,12 @@ constexpr Metric kCaptureMetrics[] = {
         {&MetricValues<double>::rmdv_printed_sqrt_ms, &MetricValues<Series>::rmdv_printed_sqrt_ms}),
     unshown("rmdv_printed_share", "pulses with an RMDV as printed", "share",
             {&MetricValues<double>::rmdv_printed_share, &MetricValues<Series>::rmdv_printed_share}),
+    colour_metric(
+        "colour_offset_ms", "colour offset",
+        {&MetricValues<double>::colour_offset_ms, &MetricValues<Series>::colour_offset_ms}),
+    colour_metric("colour_offset_spread_ms", "spread of the colour offset",
+                  {&MetricValues<double>::colour_offset_spread_ms,
+                   &MetricValues<Series>::colour_offset_spread_ms}),
     session_metric("t_l_ms", "network synchronisation delay", "ms",
                    {&MetricValues<double>::t_l_ms, &MetricValues<Series>::t_l_ms}),
     session_metric("t_t_ms", "time synchronisation delay", "ms",

@@ -80,6 +80,9 @@ struct MetricValues {
   Value disturbed_frames = no_value<Value>();    // a camera
   Value exposure_drift_ppm = no_value<Value>();  // of the worst camera
   Value wrong_locks = no_value<Value>();         // cameras
+  // Only rigs of depth and colour have these (colour_offset.h).
+  Value colour_offset_ms = no_value<Value>();
+  Value colour_offset_spread_ms = no_value<Value>();  // over the cameras
   // Only rows of Algorithms 1 and 2 have these (session_scores.h): means over the slaves.
   Value t_l_ms = no_value<Value>();           // network synchronisation delay, as measured
   Value t_t_ms = no_value<Value>();           // time synchronisation delay, as measured

@@ -115,6 +115,7 @@ PipelineScorer::Capture::Capture(const ScorerSetup& setup, const RigLayout& layo
   if (setup.is_steered) {
     parts_.push_back(std::make_unique<AlignmentPart>(layout_, setup.unsteady_start, setup.stream));
   }
+  if (setup.has_depth_and_colour) parts_.push_back(std::make_unique<ColourPart>(layout_));
 }
 
 void PipelineScorer::Capture::add(std::span<const FrameRecord> frames,

@@ -58,6 +58,7 @@ struct ScorerSetup {
   bool gatherer_needs_pulses = false;  // the oracle of gathering
   bool is_steered = false;             // there may be controls of frames: alignment is scored
   Nanoseconds unsteady_start{};        // of it: so long, cameras' exposures jitter by themselves
+  bool has_depth_and_colour = false;   // a camera has both: their offset is scored
 };
 
 class PipelineScorer final : public RecordingSink {

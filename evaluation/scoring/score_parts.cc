@@ -27,6 +27,11 @@ void AlignmentPart::add_to(SeedScore& score) {
   score.cost.notes.push_back("capture_alignment left a camera unaligned: " + problem);
 }
 
+void ColourPart::on_frames(std::span<const FrameRecord> frames,
+                           std::span<const FrameTruth> truths) {
+  for (std::size_t i = 0; i < truths.size(); ++i) offsets_.add(frames[i], truths[i]);
+}
+
 SecondAmd::SecondAmd(const EstimatorFactory& make, const RigLayout& layout, Stamping& stamping,
                      const KeptFrames& kept)
     : bank_(make_bank(make, layout.cameras.size())),

@@ -1,6 +1,7 @@
 // Parts of a score that only some captures or pipelines have, as observers beside the scorer.
 //
 //   AlignmentPart  how steered exposures coincide (alignment_scores.h), by their truth
+//   ColourPart     how far colour exposes from depth (colour_offset.h), by their truth
 //   SecondAmd      the AMD that another, offline estimator would have had of the same frames
 //
 // A scorer has a list of them: each is told the frames and events of the capture, and asked once in
@@ -17,6 +18,7 @@
 
 #include "algorithms/device_time/estimator_bank.h"
 #include "evaluation/scoring/alignment_scores.h"
+#include "evaluation/scoring/colour_offset.h"
 #include "evaluation/scoring/kept_frames.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/stamping.h"
@@ -47,6 +49,18 @@ class AlignmentPart final : public ScorePart {
  private:
   AlignmentScores scores_;
   StreamKind stream_;
+};
+
+class ColourPart final : public ScorePart {
+ public:
+  explicit ColourPart(const RigLayout& layout) : offsets_(layout) {}
+
+  // Frames without truth do not count.
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
+  void add_to(SeedScore& score) override { offsets_.add_to(score); }
+
+ private:
+  ColourOffset offsets_;
 };
 
 class SecondAmd final : public ScorePart {

@@ -148,6 +148,15 @@ struct FigureEntry {
   std::vector<PaperRate> rates{};  // empty: the paper's figure is of no stated rate
 };
 
+// A figure of the paper that no stamps can draw.
+struct PictureOfThePaper {
+  std::string paper;               // "Fig. 1"
+  std::vector<std::string> names;  // that a user may say: "fig1", "fig1a"
+  std::string content;
+  std::string place;  // where the project has what it shows: a sentence's end
+};
+const std::vector<PictureOfThePaper>& pictures_of_the_paper();
+
 // "18cam_6host_45fps (changed), yoon2021_both, 2 seeds (1-2), simbench 0.1.0 (1234567)", and the
 // first changes of the scenario, if there are any. Nothing if the source is unknown.
 std::vector<std::string> source_lines(const FigureSource& source);

@@ -21,28 +21,6 @@ constexpr const char* kMethod = "yoon2021_both";
 
 constexpr double kSameRate = 0.01;  // a trigger's rate is off by less than this share
 
-// A figure of the paper that no stamps can draw.
-struct PictureOfThePaper {
-  std::vector<std::string> names;
-  std::string content;
-  std::string place;
-};
-
-const std::vector<PictureOfThePaper>& pictures_of_the_paper() {
-  static const std::vector<PictureOfThePaper> pictures = {
-      {{"fig1", "fig1a", "fig1b"},
-       "meshes of a person, without and with the method",
-       "`simbench reconstruct` makes them (docs/reconstruction.md)"},
-      {{"fig6", "fig6a", "fig6b"},
-       "the studio with its 18 cameras, and the wiring of triggers and hosts",
-       "docs/reference/paper.md section 1 and docs/rigs.md have them in words, `simbench describe "
-       "18cam_6host_45fps` in numbers (/trigger, /hosts, /cameras)"},
-      {{"fig7a"},
-       "the camera's connector for the trigger",
-       "docs/reference/d455.md section 2 has its pins and the pulse; fig7b is drawn"}};
-  return pictures;
-}
-
 // Returns the figures that one recording is enough for.
 std::vector<FigureEntry> entries_of_a_run() {
   using enum FigureScope;
@@ -121,6 +99,24 @@ const std::vector<FigureEntry>& figure_catalogue() {
     return all;
   }();
   return entries;
+}
+
+const std::vector<PictureOfThePaper>& pictures_of_the_paper() {
+  static const std::vector<PictureOfThePaper> pictures = {
+      {"Fig. 1",
+       {"fig1", "fig1a", "fig1b"},
+       "meshes of a person, without and with the method",
+       "`simbench reconstruct` makes such meshes (docs/reconstruction.md)"},
+      {"Fig. 6",
+       {"fig6", "fig6a", "fig6b"},
+       "the studio with its 18 cameras, and the wiring of triggers and hosts",
+       "docs/reference/paper.md section 1 and docs/rigs.md have them in words, `simbench describe "
+       "18cam_6host_45fps` in numbers (/trigger, /hosts, /cameras)"},
+      {"Fig. 7 a",
+       {"fig7a"},
+       "the camera's connector for the trigger",
+       "docs/reference/d455.md section 2 has its pins and the pulse; fig7b is drawn"}};
+  return pictures;
 }
 
 const FigureEntry* find_figure(std::string_view name) {

@@ -128,13 +128,6 @@ Block table_4_block(const PaperResults& results) {
   return block;
 }
 
-// The pipeline of the paper's own figure; ids may end with their rate ("hosts_45fps").
-std::string paper_pipeline(const Figure& figure) {
-  const FigureEntry* const entry = find_figure(figure.id.substr(0, figure.id.rfind('_')));
-  const bool is_stated = entry != nullptr && !entry->pipeline.empty();
-  return is_stated ? entry->pipeline : std::string(evaluation::kPaperPipeline);
-}
-
 Block figures_block(const PaperResults& results) {
   Block block{.heading = "The paper's figures"};
   if (results.figures.empty()) {
@@ -142,10 +135,13 @@ Block figures_block(const PaperResults& results) {
     return block;
   }
   for (const Figure& figure : results.figures) {
-    if (!figure.pipeline.empty() && figure.pipeline != paper_pipeline(figure)) continue;
     block.items.push_back(fmt::format(
-        "{}, {}: {}", figure.paper, figure.title,
+        "{}, {} ({}): {}", figure.paper, figure.title, figure.source.scenario,
         figure.absent.empty() ? figure.caption : "cannot be drawn here: " + figure.absent));
+  }
+  for (const PictureOfThePaper& picture : pictures_of_the_paper()) {
+    block.items.push_back(fmt::format("{}, {}: not drawn, since no stamps make it; {}.",
+                                      picture.paper, picture.content, picture.place));
   }
   return block;
 }

@@ -130,6 +130,19 @@ constexpr MetricColumn kCaptureColumns[] = {
      .legend = "wrong locks: cameras reported as aligned that expose more than a tenth of a period "
                "beside the reference camera.",
      .legend_continues = true},
+    {.id = "colour_offset_ms",
+     .tables = {.colour = 1},
+     .heading = "colour offset\nmedian",
+     .band_heading = "colour offset\n5-95 %",
+     .legend =
+         "colour offset: mean |colour's true mid-exposure less depth's| of a camera at a pulse, "
+         "of the nearest colour frame;"},
+    {.id = "colour_offset_spread_ms",
+     .tables = {.colour = 2},
+     .heading = "its spread\nmedian",
+     .band_heading = "its spread\n5-95 %",
+     .legend = "its spread: mean range of the signed offsets over all cameras.",
+     .legend_continues = true},
     {.id = "t_l_ms",
      .tables = {.sessions = 1},
      .heading = "t_l\nmedian",

@@ -130,6 +130,14 @@ bool has_alignment(const Results& results) {
   return !rows_with(results, &TablePlaces::alignment).empty();
 }
 
+// Adds a table of the rows that have one of its values, if there are any.
+void add_where_known(const Results& results, const char* heading, int TablePlaces::*table,
+                     std::vector<Block>& blocks) {
+  const std::vector<const Row*> rows = rows_with(results, table);
+  if (rows.empty()) return;
+  blocks.push_back({.heading = heading, .table = table_of_metrics(rows, table)});
+}
+
 // Adds the legends of a table's metrics.
 void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
   for (const Metric* metric : table_metrics(table)) {
@@ -165,9 +173,8 @@ std::vector<std::string> results_legend(const Results& results) {
   append_legends(&TablePlaces::paper, lines);
   append_legends(&TablePlaces::truth, lines);
   if (has_time_errors(results)) append_legends(&TablePlaces::time_errors, lines);
-  if (has_alignment(results)) append_legends(&TablePlaces::alignment, lines);
-  if (!rows_with(results, &TablePlaces::sessions).empty()) {
-    append_legends(&TablePlaces::sessions, lines);
+  for (const auto table : {&TablePlaces::alignment, &TablePlaces::colour, &TablePlaces::sessions}) {
+    if (!rows_with(results, table).empty()) append_legends(table, lines);
   }
   if (std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera)) {
     lines.emplace_back(kSingleCameraLegend);
@@ -351,10 +358,9 @@ Document results_document(const Results& results, const std::string& summary) {
                       .table = table_of_metrics(results, &TablePlaces::time_errors)});
   }
   add(alignment_block(results), blocks);
-  if (const auto rows = rows_with(results, &TablePlaces::sessions); !rows.empty()) {
-    blocks.push_back({.heading = "Delays of the sessions of Algorithms 1 and 2",
-                      .table = table_of_metrics(rows, &TablePlaces::sessions)});
-  }
+  add_where_known(results, "Colour against depth", &TablePlaces::colour, blocks);
+  add_where_known(results, "Delays of the sessions of Algorithms 1 and 2", &TablePlaces::sessions,
+                  blocks);
   add(published_figures_block(results), blocks);
   add(program_gap_block(results), blocks);
   if (gatherings_differ(results)) {

@@ -2,13 +2,13 @@
 //
 // A block each, with a row per pipeline: the paper's metrics beside the published values, and the
 // metrics that need true time; others about the hosts' time errors, the alignment of exposures that
-// are steered, the delays of sessions of Algorithms 1 and 2, and the gathered sets if the pipelines
-// gather in different ways. The columns are
-// those of reports/results/metric_columns.h that name the table. Rows of real rigs state their
-// ground truth; those without any are "unverified" (evaluation/scoring/unverified_scores.h). Then
-// follow failures, a legend for newcomers, the paper's claims with the fraction of seeds in which
-// each holds, and the cost of the run. About 145 columns wide. Source of the definitions:
-// docs/design.md section 8.
+// are steered, colour against depth, the delays of sessions of Algorithms 1 and 2, and the gathered
+// sets if the pipelines gather in different ways. The columns are those of
+// reports/results/metric_columns.h that name the table. Rows of real rigs state their ground truth;
+// those without any are "unverified" (evaluation/scoring/unverified_scores.h). Then follow
+// failures, a legend for newcomers, the paper's claims with the fraction of seeds in which each
+// holds, and the cost of the run. About 145 columns wide. Source of the definitions: docs/design.md
+// section 8.
 //
 //   std::cout << plain(results_document(results, scenario.summary));
 #pragma once

@@ -1,5 +1,7 @@
 #include "sim/engine/random.h"
 
+#include "algorithms/ports/assert.h"
+
 namespace simbench::sim {
 
 // The high word of draw * n, rejecting the draws that would make some results more likely

@@ -28,7 +28,7 @@ TEST(SchemaErrors, TypeRangeAndChoice) {
             "and at most 10");
   EXPECT_EQ(error_of(R"("evaluation": {"gathering_queue_frames": 0})"),
             "my.json:3: /evaluation/gathering_queue_frames: found 0, allowed a whole number from 1 "
-            "to 10000");
+            "to 10000 or null");
   EXPECT_EQ(error_of(R"("cameras": {"sync_mode": "slav"})"),
             "my.json:3: /cameras/sync_mode: found \"slav\", allowed \"default\", \"master\", "
             "\"slave\", \"full_slave\", \"genlock\"");
@@ -41,7 +41,7 @@ TEST(SchemaErrors, TypeRangeAndChoice) {
             "my.json:3: /pipelines: found an array of 0, allowed an array of 1 to 1000");
   EXPECT_EQ(error_of(R"("algorithms": {"a": {"b": []}})"),
             "my.json:3: /algorithms/a/b: found an array of 0, allowed a number or true or false or "
-            "text");
+            "text or null");
   EXPECT_EQ(error_of(R"("schema_version": 2)"),
             "my.json:3: /schema_version: found 2, allowed a whole number equal to 1");
 }
@@ -190,7 +190,7 @@ TEST(Checks, TemperaturesAndDriftFiles) {
             "my.json:4: /hosts/temperature/fan_period_s: found 0, allowed a number from 0.001 to "
             "100000000");
   EXPECT_EQ(error_of(R"("hosts": {"temperature": 3})"),
-            "my.json:3: /hosts/temperature: found 3, allowed an object");
+            "my.json:3: /hosts/temperature: found 3, allowed an object or null");
   EXPECT_EQ(error_of(R"("hosts": {"drift_file": {"age_h": -1, "error_ppb": 1}})"),
             "my.json:3: /hosts/drift_file/age_h: found -1, allowed a number from 0 to 100000");
   EXPECT_EQ(error_of(R"("hosts": {"drift_file": {"age_h": 1}})"),

@@ -114,7 +114,8 @@ TEST(Studio, ASetOfAScenarioWithoutOne) {
 }
 
 TEST(Studio, SchemaErrors) {
-  EXPECT_EQ(error_of_studio(R"("studio": 1)"), "my.json:2: /studio: found 1, allowed an object");
+  EXPECT_EQ(error_of_studio(R"("studio": 1)"),
+            "my.json:2: /studio: found 1, allowed an object or null");
   EXPECT_EQ(error_of_studio(R"("studio": {"heights_m": []})"),
             "my.json:2: /studio/heights_m: found an array of 0, allowed an array of 1 to 100");
   EXPECT_EQ(error_of_studio(R"("studio": {"radius_m": 0})"),

@@ -84,7 +84,7 @@ TEST(WifiChecks, NumbersOfTheCell) {
   EXPECT_EQ(error_of(with_cell({{"slot_us", nullptr}})),
             "my.json:3: /network/wifi/slot_us: found nothing, allowed a number from 0 to 1000");
   EXPECT_EQ(error_of(R"("network": {"wifi": true})"),
-            "my.json:3: /network/wifi: found true, allowed an object");
+            "my.json:3: /network/wifi: found true, allowed an object or null");
 }
 
 TEST(WifiChecks, WhatACellDoesNotHave) {

@@ -71,7 +71,7 @@ TEST_F(Paper, WritesOnePageAndAnArchiveOfEachRate) {
                           "paper.json", "paper.txt"));
   const std::string page = content("out/paper.html");
   for (const char* part :
-       {"Fig. 9", "Fig. 10", "\"frame_errors_15fps\"", "\"frame_errors_45fps\"", "\"hosts_45fps\"",
+       {"Fig. 9", "Fig. 10", "\"fig9\"", "\"fig10\"", "\"hosts\"", "Fig. 7 a", "(6cam_2host_30fps)",
         "What is a fit", "What is not reached, and why", "Table 2: 15 fps"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }

@@ -179,9 +179,12 @@ TEST(PaperDocument, ListsItsFiguresByTheNumbersOfThePaper) {
   results.figures = {
       {.id = "stamps", .title = "Stamps", .caption = "They begin anywhere.", .paper = "Fig. 3"},
       {.id = "hosts", .title = "Hosts", .caption = "", .paper = "Fig. 5", .absent = "one host"}};
+  results.figures[0].source.scenario = "3cam";
+  results.figures[1].source.scenario = "6cam";
   const std::string text = plain(paper_document(results));
-  EXPECT_THAT(text, HasSubstr("Fig. 3, Stamps: They begin anywhere."));
-  EXPECT_THAT(text, HasSubstr("Fig. 5, Hosts: cannot be drawn here: one host"));
+  EXPECT_THAT(text, HasSubstr("Fig. 3, Stamps (3cam): They begin anywhere."));
+  EXPECT_THAT(text, HasSubstr("Fig. 5, Hosts (6cam): cannot be drawn here: one host"));
+  EXPECT_THAT(text, HasSubstr("Fig. 7 a, the camera's connector for the trigger: not drawn"));
 }
 
 TEST(PaperJson, HasTheSameForPrograms) {

@@ -59,6 +59,8 @@ TEST(ResultsJson, ARowHasEverything) {
     "wrong_locks": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "rmdv_printed_sqrt_ms": {"median": 0.5, "p05": 0.25, "p95": 0.75, "values": [0.25, 0.75]},
     "rmdv_printed_share": {"median": 0.25, "p05": 0.0, "p95": 0.5, "values": [0.0, 0.5]},
+    "colour_offset_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "colour_offset_spread_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "t_l_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "t_t_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "t_d_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
