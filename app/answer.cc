@@ -1,12 +1,18 @@
 #include "app/answer.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "app/interrupt.h"
 #include "evaluation/budget/budget.h"
 #include "reports/results/results_answer.h"
+#include "scenarios/loader.h"
 
 namespace simbench::app {
 namespace {
@@ -44,17 +50,29 @@ std::optional<Budget> affordable_budget(const Results& results, const Scenario& 
 
 }  // namespace
 
-evaluation::RankedBy ranked_by(const Scenario& scenario) {
-  return evaluation::ranked_by(scenario.evaluation.table);
+void rank_by(const std::string& metric, Results& results) {
+  if (metric.empty()) return;
+  const auto has_value = [&results](const std::string& id) {
+    return std::ranges::any_of(results.rows, [&id](const Row& row) {
+      return !std::isnan(evaluation::metric(id).series(row).median);
+    });
+  };
+  if (!has_value(metric)) {
+    std::vector<std::string> known = evaluation::ranking_metrics();
+    std::erase_if(known, [&](const std::string& id) { return !has_value(id); });
+    throw scenarios::InputError(
+        fmt::format("--rank-by: found '{}', of which these results have no value, allowed: {}",
+                    metric, fmt::join(known, ", ")));
+  }
+  results.ranked_by = evaluation::ranked_by_named(metric).value();
 }
 
 reports::AnswerText run_answer(const Results& results, const Scenario& scenario,
                                const evaluation::Progress& progress) {
-  const evaluation::RankedBy by = ranked_by(scenario);
-  const Row* const best = evaluation::answer_of(results, by).best;
+  const Row* const best = evaluation::answer_of(results).best;
   std::optional<Budget> budget;
   if (best != nullptr) budget = affordable_budget(results, scenario, *best, progress);
-  return reports::results_answer(results, by, budget ? &*budget : nullptr);
+  return reports::results_answer(results, budget ? &*budget : nullptr);
 }
 
 }  // namespace simbench::app

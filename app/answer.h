@@ -4,6 +4,8 @@
 //   const reports::AnswerText first = run_answer(results, scenario, nullptr);
 #pragma once
 
+#include <string>
+
 #include "evaluation/answer/answer.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/scoring/results.h"
@@ -12,8 +14,9 @@
 
 namespace simbench::app {
 
-// What a scenario's answer ranks by: leaderboards are in order of the absolute error.
-evaluation::RankedBy ranked_by(const scenarios::Scenario& scenario);
+// Ranks the results by the metric of this id in place of what their scenario says; "" changes
+// nothing. Throws scenarios::InputError if none of the rows has a value of it.
+void rank_by(const std::string& metric, evaluation::Results& results);
 
 // The budget is over the first seeds of the results, at most four, as many as take at most some 20
 // million events; none for programs, whose runs are too slow. The same results have the same

@@ -514,7 +514,7 @@ ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
     draw(reported, steps, progress);
     reported.answer =
         reports::is_of_files(reported.archive)
-            ? reports::results_answer(reported.archive.results, evaluation::RankedBy::kAmd, nullptr)
+            ? reports::results_answer(reported.archive.results, nullptr)
             : run_answer(reported.archive.results, scenario_of(reported.archive), nullptr);
     shorten(reported.notes);
     const std::string other = version_note(reported.archive);

@@ -9,11 +9,13 @@
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/sweep/sweep_score.h"
+#include "evaluation/sweep/sweep_standing.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/page/sweep_page.h"
 #include "reports/results/csv.h"
 #include "reports/sweep/sweep_report.h"
+#include "reports/text/answer_json.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
 
@@ -141,6 +143,11 @@ SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTabl
   const reports::Document document = document_of(plan, rows, tables, answer);
   const std::vector<reports::Figure> figures = figures_of(plan, rows, tables);
   folder.write("sweep.txt", text_for_file(document));
+  reports::Json for_programs = reports::new_document();
+  for_programs["scenario"] = plan.scenario;
+  for_programs["ranked_by"] = evaluation::ranked_metric(evaluation::ranking_of(plan, rows)).id;
+  for_programs["answer"] = reports::answer_json(answer);
+  folder.write("answer.json", reports::file_text(for_programs));
   folder.write(
       "sweep.html",
       reports::sweep_html(

@@ -45,8 +45,9 @@ struct SweepText {
   std::string not_drawn;  // why there is no plot; empty where there is one
 };
 
-// Writes sweep.csv, hosts.csv, sweep.txt, sweep.html and, if gnuplot is installed, sweep.svg with
-// the figure of the first of `tables`; puts the log in order. Throws reports::OutputError.
+// Writes sweep.csv, hosts.csv, sweep.txt, sweep.html, answer.json and, if gnuplot is installed,
+// sweep.svg with the figure of the first of `tables`; puts the log in order. Throws
+// reports::OutputError.
 SweepText write_sweep_results(const evaluation::SweepPlan& plan,
                               const std::vector<scenarios::StudyTable>& tables,
                               reports::SweepFolder& folder);

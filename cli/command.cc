@@ -11,6 +11,7 @@
 
 #include "cli/command_line.h"
 #include "cli/process.h"
+#include "evaluation/scoring/ranked_by.h"
 #include "recording/number_in.h"
 
 namespace simbench::cli {
@@ -185,6 +186,12 @@ void Command::pipelines(std::vector<std::string>& names, const std::string& othe
        "Only these pipelines of the scenario, in this order; others by their\n"
        "algorithms (`simbench list`): " +
            others);
+}
+
+void Command::rank_by(std::string& metric) {
+  word("--rank-by", "METRIC", metric, evaluation::ranking_metrics(),
+       "Rank the pipelines by this metric. Default: AMD, or in a table of steered\n"
+       "exposures their spread");
 }
 
 void Command::sets(std::vector<std::string>& values) {

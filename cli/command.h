@@ -95,6 +95,8 @@ class Command {
                  const std::string& others = stages_formula(kPipelineStages));
   // --set /json/pointer=value, repeatable; parsed by overrides_of().
   void sets(std::vector<std::string>& values);
+  // --rank-by: a metric by which results may be ranked; "" if it is not given.
+  void rank_by(std::string& metric);
   // --python: files whose algorithms there are besides; before runs().
   void python();
   // --first-seed, --seed and the like.

@@ -64,6 +64,10 @@ std::vector<BuiltinScenario> builtin_scenarios();
 // Settings that are possible but suspicious, one line each: more bytes than USB carries (with the
 // drop rate to expect), an exposure that makes the camera miss pulses, ...
 std::vector<std::string> warnings(const Scenario& scenario);
+// What makes pulses be lost in this world, "/cameras/exposure_ms: exposures of up to 40.00 ms ...":
+// those of the warnings, and stated losses; none where no
+// world is stated (files). Frames may be lost without (a burst of jitter).
+std::vector<std::string> loss_reasons(const Scenario& scenario);
 
 // The world in one line, as it is: cameras, hosts, sync mode, rates, the scored stream, frames.
 std::string world_text(const Scenario& scenario);

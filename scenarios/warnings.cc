@@ -15,11 +15,19 @@
 namespace simbench::scenarios {
 namespace {
 
-using Lines = std::vector<std::string>;
+struct Warning {
+  std::string pointer;
+  std::string text;
+  bool loses_pulses = false;  // this world loses pulses by it
+};
+using Lines = std::vector<Warning>;
 
-void warn(Lines& lines, const Scenario& scenario, const std::string& pointer,
-          const std::string& text) {
-  lines.push_back(scenario.origin->describe(pointer) + ": " + text);
+void warn(Lines& lines, const std::string& pointer, const std::string& text) {
+  lines.push_back({.pointer = pointer, .text = text});
+}
+
+void warn_of_loss(Lines& lines, const std::string& pointer, const std::string& text) {
+  lines.push_back({.pointer = pointer, .text = text, .loses_pulses = true});
 }
 
 // The bytes that a camera sends, in 1e6 per second.
@@ -62,19 +70,20 @@ void warn_about_shared_usb(Lines& lines, const Scenario& scenario, std::int64_t 
   const std::string need = fmt::format("{} on a controller {} {:.1f} MB/s", cameras_text(cameras),
                                        cameras == 1 ? "needs" : "need", std::max(needed, at_once));
   if (at_once > std::max(carried, needed)) {
-    warn(
-        lines, scenario, "/usb/bandwidth_mb_per_s",
+    warn_of_loss(
+        lines, "/usb/bandwidth_mb_per_s",
         fmt::format("{} while the frames of a pulse are read out (the rates of their modes; {:.1f} "
                     "MB/s on average), and it carries {:g}: expect at least {:.1f} % of these "
                     "frames to arrive incomplete, which the SDK discards "
                     "(/usb/hold_mode_periods)",
                     need, needed, carried, 100 * (1 - carried / at_once)));
   } else if (needed > carried) {
-    warn(lines, scenario, "/usb/bandwidth_mb_per_s",
-         fmt::format("{}, and it carries {:g}: expect at least {:.1f} % of the frames to be lost",
-                     need, carried, 100 * (1 - carried / needed)));
+    warn_of_loss(
+        lines, "/usb/bandwidth_mb_per_s",
+        fmt::format("{}, and it carries {:g}: expect at least {:.1f} % of the frames to be lost",
+                    need, carried, 100 * (1 - carried / needed)));
   } else if (cameras > kKnownToWork) {
-    warn(lines, scenario, "/usb/cameras_per_controller",
+    warn(lines, "/usb/cameras_per_controller",
          fmt::format("{} of the {:g} that it carries, so none is lost on it here; real "
                      "controllers with more than {} are reported to lose some "
                      "(docs/reference/d455.md section 3)",
@@ -89,7 +98,7 @@ void warn_about_dedicated_usb(Lines& lines, const Scenario& scenario) {
   const bool is_changed = std::ranges::count(changes, kPointer, &Change::pointer) > 0;
   const std::int64_t most = most_cameras_on_a_host(scenario);
   if (!is_changed && most <= kKnownToWork) return;
-  warn(lines, scenario, is_changed ? kPointer : "/usb/sharing",
+  warn(lines, is_changed ? kPointer : "/usb/sharing",
        fmt::format("each camera has {:g} MB/s of its own (/usb/sharing is \"dedicated\"), so "
                    "{} changes nothing: \"fair\" and \"fifo\" share a controller",
                    scenario.usb.bandwidth_mb_per_s,
@@ -118,21 +127,22 @@ void warn_about_pulses(Lines& lines, const Scenario& scenario) {
     const std::int64_t pulses = scenario.pulses_per_frame(stream);
     const PulseWindow window(stream.mode_rate_hz);
     if (is_genlock ? pulses == 1 : !window.is_faster(rate)) continue;
-    warn(lines, scenario, "/trigger/rate_hz",
-         fmt::format("{} in a {} Hz mode ignores pulses for {} less the guard of {:g}, and so "
-                     "follows at most {:.6g} Hz: of {:.6g} Hz it answers one pulse in {}, {:.6g} "
-                     "frames/s of {}{}{}",
-                     to_text(cameras.sync_mode), stream.mode_rate_hz,
-                     is_genlock ? "two mode periods" : "a mode period",
-                     cameras.genlock_guard_fraction, scenario.fastest_pulses_hz(stream), rate,
-                     pulses, scenario.frame_rate_hz(stream), to_text(stream.kind),
-                     is_genlock ? " (librealsense #12560)"
-                                : fmt::format("; what a real one does beyond {:.6g} Hz is not "
-                                              "documented",
-                                              window.fastest_hz),
-                     pulses > 1 && !cameras.common_start
-                         ? "; cameras that start at different pulses expose at different ones"
-                         : ""));
+    warn_of_loss(
+        lines, "/trigger/rate_hz",
+        fmt::format("{} in a {} Hz mode ignores pulses for {} less the guard of {:g}, and so "
+                    "follows at most {:.6g} Hz: of {:.6g} Hz it answers one pulse in {}, {:.6g} "
+                    "frames/s of {}{}{}",
+                    to_text(cameras.sync_mode), stream.mode_rate_hz,
+                    is_genlock ? "two mode periods" : "a mode period",
+                    cameras.genlock_guard_fraction, scenario.fastest_pulses_hz(stream), rate,
+                    pulses, scenario.frame_rate_hz(stream), to_text(stream.kind),
+                    is_genlock ? " (librealsense #12560)"
+                               : fmt::format("; what a real one does beyond {:.6g} Hz is not "
+                                             "documented",
+                                             window.fastest_hz),
+                    pulses > 1 && !cameras.common_start
+                        ? "; cameras that start at different pulses expose at different ones"
+                        : ""));
   }
 }
 
@@ -150,8 +160,8 @@ void warn_about_exposure(Lines& lines, const Scenario& scenario) {
   const double start_ms = is_triggered ? cameras.trigger_to_exposure_us * 1e-3 : 0;
   const auto warn_if_longer = [&](const std::string& pointer, double longest_ms) {
     if (start_ms + longest_ms <= period_ms) return;
-    warn(
-        lines, scenario, pointer,
+    warn_of_loss(
+        lines, pointer,
         fmt::format("exposures of up to {:.2f} ms, beginning {:.2f} ms after the pulse, do not fit "
                     "into the frame period of {:.2f} ms: expect missed pulses and half the rate "
                     "(realsense-ros #2612)",
@@ -172,7 +182,7 @@ void warn_about_shutters(Lines& lines, const Scenario& scenario) {
     const Stream& stream = scenario.cameras.streams[i];
     const StreamProfile* profile = camera->stream(stream.kind);
     if (stream.shutter == profile->shutter) continue;
-    warn(lines, scenario, fmt::format("/cameras/streams/{}/shutter", i),
+    warn(lines, fmt::format("/cameras/streams/{}/shutter", i),
          fmt::format("{}, but the {} camera of the {} has a {} shutter", to_text(stream.shutter),
                      to_text(stream.kind), camera->name, to_text(profile->shutter)));
   }
@@ -186,7 +196,7 @@ void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
                                     static_cast<double>(most_cameras_on_a_host(scenario)) *
                                     network.capture_traffic_share;
   if (offered_mbit_per_s <= network.bandwidth_mbit_per_s) return;
-  warn(lines, scenario, "/network/capture_traffic_share",
+  warn(lines, "/network/capture_traffic_share",
        fmt::format("the frames of a host are {:.0f} Mbit/s on a link that carries {:g}: what "
                    "finds more than a second of traffic queued is lost",
                    offered_mbit_per_s, network.bandwidth_mbit_per_s));
@@ -196,13 +206,13 @@ void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const Stream& stream = *scenario.scored_stream();
   if (!cameras.follows_trigger(stream) && !cameras.frame_control) {
-    warn(lines, scenario, "/evaluation/stream",
+    warn(lines, "/evaluation/stream",
          fmt::format("in sync mode \"{}\" the {} stream does not follow the trigger: its frames "
                      "differ by up to a frame period",
                      to_text(cameras.sync_mode), to_text(stream.kind)));
   }
   if (scenario.timeline.warm_up_ms < cameras.unstable_start_ms) {
-    warn(lines, scenario, "/timeline/warm_up_ms",
+    warn(lines, "/timeline/warm_up_ms",
          fmt::format("evaluation begins after {:g} ms, exposures are unsteady for {:g} ms",
                      scenario.timeline.warm_up_ms, cameras.unstable_start_ms));
   }
@@ -217,7 +227,7 @@ void warn_about_wires(Lines& lines, const Scenario& scenario) {
   const double sigma_ms =
       std::hypot(network.asymmetry_sigma_ms, std::numbers::sqrt2 * network.port_asymmetry_sigma_ms);
   if (sigma_ms == 0 || sigma_ms <= least_ms) return;
-  warn(lines, scenario,
+  warn(lines,
        network.asymmetry_sigma_ms >= network.port_asymmetry_sigma_ms
            ? "/network/asymmetry_sigma_ms"
            : "/network/port_asymmetry_sigma_ms",
@@ -229,7 +239,7 @@ void warn_about_wires(Lines& lines, const Scenario& scenario) {
 
 void warn_about_wifi(Lines& lines, const Scenario& scenario) {
   if (!scenario.network.wifi || !scenario.hosts.nic.hardware_stamps) return;
-  warn(lines, scenario, "/network/wifi",
+  warn(lines, "/network/wifi",
        "a card's transmit stamp is of the instant at which it has the message, not of its "
        "transmission: hardware stamps see the wait for the channel as asymmetry");
 }
@@ -242,7 +252,7 @@ void warn_about_controls(Lines& lines, const Scenario& scenario) {
   const FrameControlProfile& offered = *camera.frame_control;
   const auto warn_if_hypothetical = [&](const char* control, bool is_given, bool is_offered) {
     if (!is_given || is_offered) return;
-    warn(lines, scenario, fmt::format("/cameras/frame_control/{}", control),
+    warn(lines, fmt::format("/cameras/frame_control/{}", control),
          fmt::format("a hypothetical control: no {} offers it (simbench list cameras)",
                      camera.name));
   };
@@ -255,7 +265,7 @@ void warn_about_controls(Lines& lines, const Scenario& scenario) {
 void warn_about_temperature(Lines& lines, const Scenario& scenario) {
   if (!scenario.hosts.temperature) return;
   if (scenario.hosts.clock.oscillator.temperature_coefficient_ppb_per_k != 0) return;
-  warn(lines, scenario, "/hosts/temperature",
+  warn(lines, "/hosts/temperature",
        "changes nothing: /hosts/clock/oscillator/temperature_coefficient_ppb_per_k is 0 or not "
        "stated");
 }
@@ -267,7 +277,7 @@ void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
   const std::int64_t idle =
       std::count(counts.begin() + (is_master_left_out ? 1 : 0), counts.end(), 0U);
   if (idle == 0) return;
-  warn(lines, scenario, "/hosts/count",
+  warn(lines, "/hosts/count",
        fmt::format("{} of {} hosts have no camera", idle, scenario.hosts.count));
 }
 
@@ -280,7 +290,7 @@ void warn_about_oscillators(Lines& lines, const Scenario& scenario) {
   const auto warn_if_far = [&](const std::string& pointer, const char* what, double fraction,
                                double most) {
     if (fraction < most) return;
-    warn(lines, scenario, pointer,
+    warn(lines, pointer,
          fmt::format("{} the frequency by {:.2g} % in the {:.0f} s until the capture ends; it goes "
                      "no further than {:g} %",
                      what, 100 * fraction, seconds, 100 * kMostFrequencyError));
@@ -318,7 +328,7 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
   const Studio& studio = *scenario.studio;
   const Sight sight = sight_of(studio);
   if (sight.nearest_m < studio.min_distance_m || sight.farthest_m > studio.max_distance_m) {
-    warn(lines, scenario, "/studio/radius_m",
+    warn(lines, "/studio/radius_m",
          fmt::format("cameras are {:.3g} to {:.3g} m from the centre they look at and see from "
                      "{:g} to {:g} m",
                      sight.nearest_m, sight.farthest_m, studio.min_distance_m,
@@ -328,7 +338,7 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
   if (subject.motion == MotionScript::kWalkAndTurn && subject.turn_rate_rad_per_s > 0) {
     const double circle_m = subject.walk_speed_m_per_s / subject.turn_rate_rad_per_s;
     if (circle_m >= studio.radius_m) {
-      warn(lines, scenario, "/studio/subject/walk_speed_m_per_s",
+      warn(lines, "/studio/subject/walk_speed_m_per_s",
            fmt::format("the subject walks on a circle of {:.3g} m, the cameras stand on one of "
                        "{:g} m",
                        circle_m, studio.radius_m));
@@ -336,9 +346,7 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
   }
 }
 
-}  // namespace
-
-std::vector<std::string> warnings(const Scenario& scenario) {
+Lines all_warnings(const Scenario& scenario) {
   Lines lines;
   warn_about_usb(lines, scenario);
   warn_about_pulses(lines, scenario);
@@ -354,6 +362,38 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_oscillators(lines, scenario);
   warn_about_studio(lines, scenario);
   return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Scenario& scenario) {
+  std::vector<std::string> lines;
+  for (const Warning& warning : all_warnings(scenario)) {
+    lines.push_back(scenario.origin->describe(warning.pointer) + ": " + warning.text);
+  }
+  return lines;
+}
+
+std::vector<std::string> loss_reasons(const Scenario& scenario) {
+  std::vector<std::string> reasons;
+  if (scenario.cameras.streams.empty()) return reasons;  // of files: no world is stated
+  Lines lines;
+  warn_about_usb(lines, scenario);
+  warn_about_pulses(lines, scenario);
+  warn_about_exposure(lines, scenario);
+  for (const Warning& warning : lines) {
+    if (warning.loses_pulses) reasons.push_back(warning.pointer + ": " + warning.text);
+  }
+  if (scenario.cameras.drop_probability > 0) {
+    reasons.push_back(
+        fmt::format("/cameras/drop_probability: {:.3g} % of the frames are lost in "
+                    "the cameras",
+                    100 * scenario.cameras.drop_probability));
+  }
+  if (!scenario.faults.empty()) {
+    reasons.push_back(fmt::format("/faults: {} in this world", scenario.faults.size()));
+  }
+  return reasons;
 }
 
 }  // namespace simbench::scenarios

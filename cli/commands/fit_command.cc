@@ -165,10 +165,9 @@ std::optional<std::string> ranking_text(const scenarios::Scenario& model,
       {.unit = "run"});
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
-  return app::results_text(
-      *results, ranking.scenario, options.format,
-      options.verbose ? app::Detail::kAll : app::Detail::kScreen,
-      reports::results_answer(*results, app::ranked_by(ranking.scenario), nullptr));
+  return app::results_text(*results, ranking.scenario, options.format,
+                           options.verbose ? app::Detail::kAll : app::Detail::kScreen,
+                           reports::results_answer(*results, nullptr));
 }
 
 int run_fit(const FitOptions& options) {

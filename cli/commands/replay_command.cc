@@ -45,6 +45,7 @@ struct ReplayOptions {
   std::vector<std::string> inputs;
   InputOptions reading;
   app::StreamScoring scoring;
+  std::string rank_by;
   std::string format;
   std::string output;
   std::vector<std::string> command;
@@ -82,19 +83,19 @@ int run_replay(const ReplayOptions& options) {
   if (!run) return kInterrupted;
   const std::vector<std::string> pipelines = run->chosen(options.scoring.pipelines);
   for (const std::string& note : run->missing()) print_note(note);
-  const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
+  auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
     return run->evaluate(pipelines, !options.output.empty(), progress);
   });
   if (!results) return kInterrupted;
+  app::rank_by(options.rank_by, *results);
   print_notes(*run, *results);
   if (archive.write(*results, run->scenario())) {
     print_note("results written to " + options.output);
   }
   std::vector<reports::Block> more;
   if (run->streams() != nullptr) more.push_back(reports::frames_block(run->streams()->streams()));
-  print_result(app::results_text(
-      *results, run->scenario(), options.format, app::Detail::kAll,
-      reports::results_answer(*results, app::ranked_by(run->scenario()), nullptr), more));
+  print_result(app::results_text(*results, run->scenario(), options.format, app::Detail::kAll,
+                                 reports::results_answer(*results, nullptr), more));
   return kOk;
 }
 
@@ -116,6 +117,7 @@ void add_replay_command(CommandLine& line) {
                "With files: one trigger pulse started all cameras (GenLock), so that the order of\n"
                "frames tells which belong together. Default: the gathered sets are scored,\n"
                "unverified");
+  command.rank_by(options->rank_by);
   command.format(options->format, {"table", "markdown", "latex", "json", "csv", "tidy"});
   command.text("-o,--output", "DIR", options->output,
                "Write manifest.json, results.json, frames.csv and hosts.csv to this folder, as\n"

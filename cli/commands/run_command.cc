@@ -48,6 +48,7 @@ struct RunOptions {
   BackendOptions backend;
   std::vector<std::string> sets;
   ProgramOptions programs;
+  std::string rank_by;
   std::string format;
   std::string output;
   bool budget = false;
@@ -137,7 +138,7 @@ std::string text_with_prediction(const evaluation::Results& measured,
                                  const scenarios::Scenario& scenario, const RunOptions& options) {
   if (options.format == "json") return reports::json_with_prediction(measured, simulated);
   return app::results_text(measured, scenario, options.format, options.detail(),
-                           reports::results_answer(measured, app::ranked_by(scenario), nullptr),
+                           reports::results_answer(measured, nullptr),
                            {reports::prediction_block(measured, simulated)});
 }
 
@@ -157,8 +158,9 @@ void check_anything_was_captured(const evaluation::Results& measured) {
 int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
                app::RunArchive archive) {
   archive.open(options.output);
-  const std::optional<evaluation::Results> measured = measure_rig(scenario, options);
+  std::optional<evaluation::Results> measured = measure_rig(scenario, options);
   if (!measured) return kInterrupted;
+  app::rank_by(options.rank_by, *measured);
   check_anything_was_captured(*measured);
   print_warnings(measured->warnings);
   if (archive.write(*measured, scenario)) print_note("results written to " + options.output);
@@ -196,8 +198,9 @@ int run(RunOptions options) {
   archive.open(options.output);
   evaluation::EvaluationOptions evaluation = options.evaluation;
   evaluation.keep_pulses = !options.output.empty();
-  const std::optional<evaluation::Results> results = simulate(scenario, evaluation);
+  std::optional<evaluation::Results> results = simulate(scenario, evaluation);
   if (!results) return kInterrupted;
+  app::rank_by(options.rank_by, *results);
   print_warnings(results->warnings);
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
   const std::optional<reports::AnswerText> answer = answer_for_people(*results, scenario, options);
@@ -222,6 +225,7 @@ void add_run_command(CommandLine& line) {
   command.jobs(evaluation.jobs);
   command.pipelines(evaluation.pipelines);
   command.sets(options->sets);
+  command.rank_by(options->rank_by);
   command.python();
   add_program_options(command, options->programs);
   add_backend_options(command, options->backend);

@@ -60,6 +60,7 @@ struct SweepOptions {
   std::optional<std::uint64_t> from_s;
   evaluation::SweepRequest request;
   std::vector<std::string> sets;
+  std::string rank_by;
   std::optional<std::uint64_t> seeds;
   unsigned jobs = 0;
   std::string output;
@@ -170,6 +171,11 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
       options.clocks ? evaluation::AdHoc::kHostSyncToo : evaluation::AdHoc::kAllStages);
   if (options.seeds) options.request.seeds = *options.seeds;
   set_kind(options, study, options.request);
+  options.request.ranked_by = evaluation::ranked_by_named(options.rank_by);
+  if (options.request.ranked_by && options.request.kind == evaluation::ResultKind::kClockRuns) {
+    throw scenarios::InputError(
+        "--rank-by: allowed without --clocks, whose runs are ranked by the spread of the clocks");
+  }
   const SweepPlan plan = evaluation::make_plan(options.request);
   if (plan.points() >= kManyPoints) {
     print_note("checking " + counted(plan.points(), "point"));
@@ -219,6 +225,7 @@ void add_sweep_command(CommandLine& line) {
   command.seed("--first-seed", request.first_seed, "The first seed. Default: 1");
   command.pipelines(request.pipelines);
   command.sets(options->sets);
+  command.rank_by(options->rank_by);
   command.python();
   command.jobs(options->jobs, "Threads. Default: one for every core; under MPI one for every rank");
   command.text("-o,--output", "DIR", options->output,

@@ -125,7 +125,7 @@ class Adviser {
       const auto found = std::ranges::find_if(option.pipelines, [&](const PipelineAdvice& each) {
         return each.pipeline.name == pipeline.name;
       });
-      if (found->frames_dropped == 0 && found->interval().high >= kWantedShare) {
+      if (found->may_be_fit()) {
         promising.push_back(pipeline);
       }
     }

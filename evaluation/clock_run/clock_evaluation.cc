@@ -154,6 +154,7 @@ class ClockEvaluation {
     ClockResults all;
     Results& results = all.results;
     results.kind = ResultKind::kClockRuns;
+    results.ranked_by = RankedBy::kClockSpread;
     results.clock_period = {.from_s = options_.from_s, .duration_s = options_.duration_s};
     results.scenario = scenario_.name;
     results.derivation = scenario_.derivation;

@@ -101,6 +101,8 @@ class EvaluationRun {
   Results results(double wall_seconds) {
     Results results;
     results.scenario = scenario_.name;
+    results.ranked_by = ranked_by(scenario_.evaluation.table);
+    results.loss_reasons = loss_reasons(scenario_);
     results.derivation = scenario_.derivation;
     results.draws_load = scenario_.draws_load();
     results.first_seed = options_.first_seed;

@@ -24,11 +24,11 @@ PairedRatios ratios(const Row& row, const Row* other) {
           .amd = paired_ratio(row.amd_ms, other->amd_ms)};
 }
 
-// Rows without an error come last; equal ones keep their order.
-void sort_by_error(std::vector<Rank>& ranks) {
-  std::stable_sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
-    const double left = a.row->absolute_error_ms.median;
-    const double right = b.row->absolute_error_ms.median;
+// Rows without a value come last; equal ones keep their order.
+void sort_ranks(RankedBy ranked_by, std::vector<Rank>& ranks) {
+  std::stable_sort(ranks.begin(), ranks.end(), [ranked_by](const Rank& a, const Rank& b) {
+    const double left = ranked_series(*a.row, ranked_by).median;
+    const double right = ranked_series(*b.row, ranked_by).median;
     if (std::isnan(left) || std::isnan(right)) return !std::isnan(left) && std::isnan(right);
     return left < right;
   });
@@ -44,19 +44,27 @@ void sort_by_recall(std::vector<Rank>& ranks) {
   });
 }
 
-bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
+bool differ_alone_in(PipelineStage stage, const std::vector<Rank>& ranks) {
   const Row& first = *ranks.front().row;
-  const auto same_stamps = [&first](const Rank& rank) {
-    return std::ranges::all_of(kPipelineStages, [&](const StageInfo& stage) {
-      return stage.id == PipelineStage::kGathering ||
-             at_stage(*rank.row, stage.id) == at_stage(first, stage.id);
+  const auto is_alike_elsewhere = [&](const Rank& rank) {
+    return std::ranges::all_of(kPipelineStages, [&](const StageInfo& other) {
+      return other.id == stage || at_stage(*rank.row, other.id) == at_stage(first, other.id);
     });
   };
-  const auto other_gathering = [&first](const Rank& rank) {
-    return rank.row->gathering != first.gathering;
+  const auto is_other = [&](const Rank& rank) {
+    return at_stage(*rank.row, stage) != at_stage(first, stage);
   };
-  return std::all_of(ranks.begin(), ranks.end(), same_stamps) &&
-         std::any_of(ranks.begin(), ranks.end(), other_gathering);
+  return std::ranges::all_of(ranks, is_alike_elsewhere) && std::ranges::any_of(ranks, is_other);
+}
+
+// How a board is ranked: as its results, or by the clocks where its rows differ in these alone.
+RankedBy ranking_of_board(const Results& results, const std::vector<Rank>& ranks) {
+  const RankedBy ranked_by = ranking_of(results);
+  const bool is_of_hosts =
+      ranked_by == RankedBy::kAmd && differ_alone_in(PipelineStage::kHostSync, ranks) &&
+      std::ranges::any_of(
+          ranks, [](const Rank& rank) { return !std::isnan(rank.row->host_error_ms.median); });
+  return is_of_hosts ? RankedBy::kHostError : ranked_by;
 }
 
 }  // namespace
@@ -95,14 +103,17 @@ std::vector<Board> leaderboard(const Results& results) {
         .push_back({.row = &row, .to_oracle = ratios(row, oracle), .to_paper = ratios(row, paper)});
   }
   for (Board& board : boards) {
-    std::vector<Rank>& ranks = board.online.empty() ? board.offline : board.online;
-    board.of_gathering =
-        (board.online.empty() || board.offline.empty()) && differ_in_gathering_alone(ranks);
-    if (board.of_gathering) {
-      sort_by_recall(ranks);
-    } else {
-      sort_by_error(board.online);
-      sort_by_error(board.offline);
+    std::vector<Rank> all = board.online;
+    all.insert(all.end(), board.offline.begin(), board.offline.end());
+    board.ranked_by = ranking_of_board(results, all);
+    board.of_gathering = (board.online.empty() || board.offline.empty()) &&
+                         differ_alone_in(PipelineStage::kGathering, all);
+    for (std::vector<Rank>* ranks : {&board.online, &board.offline}) {
+      if (board.of_gathering) {
+        sort_by_recall(*ranks);
+      } else {
+        sort_ranks(board.ranked_by, *ranks);
+      }
     }
   }
   return boards;

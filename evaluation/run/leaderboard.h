@@ -1,11 +1,13 @@
-// The rows of a leaderboard: by absolute error, with ratios to the limit and to the paper.
+// The rows of a leaderboard: board by board, with ratios to the limit and to the paper.
 //
 // A leaderboard scenario names its pipelines "<board>.<algorithm>": the rows of a board differ in
 // one stage. Its row "<board>.oracle" has the oracle in that stage. Rows without a dot are the
 // board "" (references). Ratios are paired by seed: the median of the row's value divided by the
-// other's, over seeds in which both exist. Rows are in order of their median absolute error, rows
-// without one last; estimators that need the whole recording (offline) are ranked apart. Rows that
-// differ in gathering alone share one error; they are in order of recall, then precision.
+// other's, over seeds in which both exist. Rows are in order of what the results are ranked by
+// (scoring/ranked_by.h), rows without a value last; a board whose rows differ in host_sync alone is
+// in order of the hosts' clock errors. Estimators that need the whole recording (offline) are
+// ranked apart. Rows that differ in gathering alone share one error; they are in order of recall,
+// then precision.
 //
 //   for (const Board& board : leaderboard(results)) board.online.front().row->pipeline;
 #pragma once
@@ -40,7 +42,8 @@ struct Board {
   std::string name;
   std::vector<Rank> online;
   std::vector<Rank> offline;
-  bool of_gathering = false;  // its rows differ in gathering alone
+  RankedBy ranked_by = RankedBy::kAmd;
+  bool of_gathering = false;  // its rows differ in gathering alone: recall ranks them
 };
 
 // Returns the boards in order of their first rows. `results` must outlive them.

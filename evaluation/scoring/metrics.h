@@ -131,6 +131,9 @@ struct SetCounts {
   std::int64_t emitted = 0;          // complete sets
   std::int64_t pure = 0;             // of those, all members from one pulse
   std::int64_t complete_pulses = 0;  // evaluated pulses that all sources delivered
+  // What became of the pulses (pulse_account.h); 0 due: it is not known.
+  std::int64_t due_pulses = 0;
+  std::int64_t exposed_pulses = 0;  // by all cameras
   std::int64_t discarded_frames = 0;
   std::int64_t partial = 0;       // sets that lack a source
   std::int64_t index_errors = 0;  // members of emitted sets of another pulse than most members

@@ -11,6 +11,7 @@
 #include "algorithms/ports/assert.h"
 #include "evaluation/scoring/frame_order.h"
 #include "evaluation/scoring/kept_frames.h"
+#include "evaluation/scoring/pulse_account.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/score_parts.h"
 #include "evaluation/scoring/session_scores.h"
@@ -81,6 +82,7 @@ class PipelineScorer::Capture {
   std::unique_ptr<Gatherer> gatherer_;
   Stamping stamping_;
   PulseTable table_;
+  PulseAccount account_;
   bool uses_warm_up_;  // device_time or gathering does
   FrameOrder order_;
   FrameBlock block_;                // the frames of one call that are treated alike
@@ -101,6 +103,7 @@ PipelineScorer::Capture::Capture(const ScorerSetup& setup, const RigLayout& layo
       gatherer_(setup.make_gatherer(gathering_of(setup, layout))),
       stamping_(layout, setup.make_estimator),
       table_(layout.first_pulse, layout.pulses, layout.cameras.size()),
+      account_(layout.first_pulse, layout.pulses, layout.cameras.size()),
       uses_warm_up_(stamping_.stamps_warm_up() || gatherer_->from_first_frame()),
       host_errors_(layout.hosts),
       sessions_(layout.hosts) {
@@ -158,6 +161,7 @@ void PipelineScorer::Capture::place(Order& order, std::span<const FrameRecord> f
                     "a frame of a camera that the rig does not have");
     const DeviceTime sensor = stamping_.unwrap(frame.camera, frame.sensor);
     const FramePlace place = order.place(frame, truth, sensor);
+    account_.add(frame.camera, place.pulse, frame.counter);
     stamping_.note(frame);
     if (place.warm_up && !uses_warm_up_) continue;
     if (place.warm_up != is_warm_up_) finish_block();
@@ -257,6 +261,7 @@ SeedScore PipelineScorer::Capture::finish() {
   std::visit(Overloaded{[](std::monostate) {}, [&](const auto& order) { order.add_to(score); }},
              order_);
   score.ground_truth = ground_truth();
+  if (score.ground_truth != GroundTruth::kNone) account_.add_to(score.sets);
   score.sets.discarded_frames = static_cast<std::int64_t>(gatherer_->discarded());
   score.host_error_ms = host_errors_.mean_absolute_ms();
   host_errors_.time_errors().add_to(score);

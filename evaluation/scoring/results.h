@@ -15,6 +15,7 @@
 #include "evaluation/scoring/asymmetry_floor.h"
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/published_figures.h"
+#include "evaluation/scoring/ranked_by.h"
 #include "recording/recording.h"
 #include "scenarios/derivation.h"
 
@@ -115,7 +116,8 @@ struct ClockPeriod {
 
 struct Results {
   ResultKind kind = ResultKind::kCaptures;
-  ClockPeriod clock_period{};  // of clock runs
+  RankedBy ranked_by = RankedBy::kAmd;  // ranking_of() has what is
+  ClockPeriod clock_period{};           // of clock runs
   std::string scenario;
   scenarios::Derivation derivation{};  // of that scenario
   bool draws_load = false;             // of each pipeline, Scenario::draws_load()
@@ -126,6 +128,7 @@ struct Results {
   std::vector<Claim> claims;
   std::optional<AsymmetryFloor> asymmetry_floor;  // if the scenario's links are asymmetric
   std::vector<std::string> warnings;
+  std::vector<std::string> loss_reasons{};  // why pulses are lost: scenarios::loss_reasons()
   Performance performance;
 };
 

@@ -301,6 +301,7 @@ SweepPlan make_plan(const SweepRequest& request) {
   plan.scenario = scenario.name;
   plan.derivation = scenario.derivation;
   plan.draws_load = scenario.draws_load() || sweeps_load(plan);
+  plan.ranked_by = request.ranked_by.value_or(ranked_by(scenario.evaluation.table));
   plan.scenario_json = scenario.resolved_json();
   ClockPipelines chosen = pipelines_of(scenario, request, request.pipelines);
   plan.pipelines = std::move(chosen.names);

@@ -25,6 +25,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,8 @@ struct SweepRequest {
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 32;
   ResultKind kind = ResultKind::kCaptures;
-  ClockPeriod clock_period{};  // of clock runs
+  ClockPeriod clock_period{};           // of clock runs
+  std::optional<RankedBy> ranked_by{};  // nothing: as the scenario says
 };
 
 struct SweepRun {
@@ -68,10 +70,11 @@ struct SweepRun {
 };
 
 struct SweepPlan {
-  std::string scenario;                // its name
-  scenarios::Derivation derivation{};  // of the scenario without the axes
-  bool draws_load = false;             // Scenario::draws_load(), of that scenario or by an axis
-  std::string scenario_json;           // resolved, with the overrides for all points
+  std::string scenario;                 // its name
+  scenarios::Derivation derivation{};   // of the scenario without the axes
+  bool draws_load = false;              // Scenario::draws_load(), of that scenario or by an axis
+  RankedBy ranked_by = RankedBy::kAmd;  // of that scenario; sweep_standing.h has what is
+  std::string scenario_json;            // resolved, with the overrides for all points
   std::vector<SweepAxis> axes;
   std::vector<std::string> pipelines;
   std::vector<std::string> left_out{};  // notes on pipelines that clock runs leave out

@@ -130,6 +130,8 @@ const Series& ResponseRow::of(std::string_view column) const {
   return series[place_of(column, kind)];
 }
 
+Series& ResponseRow::at(std::string_view column) { return series[place_of(column, kind)]; }
+
 double ResponseRow::value(const Metric& metric) const {
   const auto* number = std::get_if<double PooledValues::*>(&metric.place);
   return number != nullptr ? pooled.**number : of(metric.sweep).median;

@@ -50,6 +50,7 @@ struct ResponseRow {
 
   // The series of a column, which must exist: of("amd_ms").median.
   const Series& of(std::string_view column) const;
+  Series& at(std::string_view column);
   // The value of a metric that is a column, over all seeds: its median, or the pooled number.
   double value(const Metric& metric) const;
 };

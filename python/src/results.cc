@@ -101,17 +101,10 @@ std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
   return run;
 }
 
-evaluation::RankedBy ranking(const Run& run) {
-  if (run.results().kind == evaluation::ResultKind::kClockRuns) {
-    return evaluation::RankedBy::kClockSpread;
-  }
-  return run.scenario ? app::ranked_by(*run.scenario) : evaluation::RankedBy::kAmd;
-}
-
 // As the commands have it: a recorded run's has no budget, which needs other worlds.
 const reports::AnswerText& known_answer(Run& run, const py::object& on_progress) {
   if (!run.answer && (run.recorded || !run.scenario)) {
-    run.answer = reports::results_answer(run.results(), ranking(run), nullptr);
+    run.answer = reports::results_answer(run.results(), nullptr);
   }
   if (!run.answer) {
     run.answer = watched<reports::AnswerText>(on_progress, [&](const Progress& progress) {
@@ -142,7 +135,7 @@ std::string html_of(Run& run, const py::object& on_progress) {
 
 py::list overview_of(const Run& run) {
   py::list rows;
-  for (const auto& row : reports::overview_rows(run.results(), ranking(run))) {
+  for (const auto& row : reports::overview_rows(run.results())) {
     rows.append(py::dict(py::arg("pipeline") = row.row->pipeline, py::arg("word") = row.word,
                          py::arg("median_ms") = row.series->median,
                          py::arg("p05_ms") = row.series->p05, py::arg("p95_ms") = row.series->p95,
@@ -335,8 +328,11 @@ void bind_run(py::module_& module) {
           "is_clock_run",
           [](const Run& run) { return run.results().kind == evaluation::ResultKind::kClockRuns; })
       .def_property_readonly("notes", [](const Run& run) { return run.notes; })
-      .def_property_readonly("ranked_name",
-                             [](const Run& run) { return reports::ranked_name(ranking(run)); })
+      .def_property_readonly(
+          "ranked_name",
+          [](const Run& run) {
+            return evaluation::ranked_metric(evaluation::ranking_of(run.results())).title;
+          })
       .def_property_readonly("scenario_json",
                              [](const Run& run) { return run.archive.scenario_json; })
       .def("csv", [](const Run& run) { return reports::csv(run.results()); })

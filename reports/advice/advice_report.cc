@@ -7,6 +7,7 @@
 
 #include "recording/collected.h"
 #include "recording/counted.h"
+#include "reports/text/answer_json.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
@@ -38,6 +39,7 @@ std::string probability_text(const PipelineAdvice& pipeline) {
 }
 
 std::string margin_text(double margin) {
+  if (std::isnan(margin)) return "-";
   return std::isinf(margin) ? "all" : fmt::format("{:.2g}", margin);
 }
 
@@ -46,7 +48,8 @@ std::string euro_text(double eur) { return fmt::format("{:.0f}", eur); }
 std::string verdict(const OptionAdvice& option) {
   const PipelineAdvice& best = option.best();
   if (best.frames_dropped > 0) return "no: USB drops frames";
-  if (best.is_fit()) return option.is_settled ? "yes" : "perhaps";
+  if (best.is_fit()) return "yes";
+  if (best.may_be_fit()) return "perhaps";
   return "no";
 }
 
@@ -143,12 +146,23 @@ std::string nothing_meets(const Advice& advice) {
     if (a.frames_dropped > 0) continue;
     if (a.share() > b.share() || (a.share() == b.share() && a.margin > b.margin)) nearest = &each;
   }
+  const PipelineAdvice& best = nearest->best();
+  if (best.may_be_fit()) {
+    return fmt::format(
+        "No rig is shown to meet {} for {} with 95 % probability. {} comes nearest, with {}: {} of "
+        "{} simulated rigs do, a probability of {:.0f} to {:.0f} %; {} seeds that all do would "
+        "show it (--seeds).",
+        requirements_text(advice), asked_rig_text(advice), nearest->option.name(),
+        best.pipeline.name, best.met, best.seeds, 100 * best.interval().low,
+        100 * best.interval().high, evaluation::kAdviceSeeds);
+  }
   return fmt::format(
       "None of {} meets {} for {} with 95 % probability. {} comes nearest, with {}: {} of {} "
-      "simulated rigs do, at a margin of {}.",
+      "simulated rigs do, at {}.",
       counted(advice.options.size(), "rig"), requirements_text(advice), asked_rig_text(advice),
-      nearest->option.name(), nearest->best().pipeline.name, nearest->best().met,
-      nearest->best().seeds, margin_text(nearest->best().margin));
+      nearest->option.name(), best.pipeline.name, best.met, best.seeds,
+      std::isnan(best.margin) ? "no margin, since a metric that is asked for has no value there"
+                              : "a margin of " + margin_text(best.margin));
 }
 
 Json pipeline_json(const PipelineAdvice& pipeline, const Advice& advice) {
@@ -196,35 +210,40 @@ std::string price_class(const scenarios::PriceRange& price) {
                      euro_text(price.low_eur), euro_text(price.high_eur));
 }
 
-std::string advice_answer(const Advice& advice) {
-  if (!advice.recommended) return nothing_meets(advice);
+AnswerText advice_answer(const Advice& advice) {
+  if (!advice.recommended) return {.lead = nothing_meets(advice)};
   const OptionAdvice& option = advice.options[*advice.recommended];
   const PipelineAdvice& best = option.best();
-  std::string text = fmt::format(
-      "{} meets {} for {} in {} of {} simulated rigs (a probability of {:.0f} to {:.0f} %), with "
-      "{}. It is the cheapest that does with 95 %: price class {}, without cameras and trigger. "
-      "Margin {}.",
-      option.option.name(), requirements_text(advice), asked_rig_text(advice), best.met, best.seeds,
-      100 * best.interval().low, 100 * best.interval().high, best.pipeline.name,
-      price_class(option.option.price), margin_text(best.margin));
+  AnswerText answer{.lead = fmt::format(
+                        "{} meets {} for {} in {} of {} simulated rigs (a probability of {:.0f} to "
+                        "{:.0f} %), with {}.",
+                        option.option.name(), requirements_text(advice), asked_rig_text(advice),
+                        best.met, best.seeds, 100 * best.interval().low, 100 * best.interval().high,
+                        best.pipeline.name)};
+  answer.add("Price",
+             fmt::format("It is the cheapest that does with 95 %: price class {}, without cameras "
+                         "and trigger.",
+                         price_class(option.option.price)));
+  answer.add("Margin", fmt::format("Margin {}.", margin_text(best.margin)));
   if (advice.fails_first) {
-    text += fmt::format(" What fails first is the stage {}, which makes {} of the {}.",
-                        advice.fails_first->stage, share_text(advice.fails_first->share),
-                        advice.fails_first->metric);
+    answer.add("Fails first",
+               fmt::format("What fails first is the stage {}, which makes {} of the {}.",
+                           advice.fails_first->stage, share_text(advice.fails_first->share),
+                           advice.fails_first->metric));
   }
-  return text;
+  return answer;
 }
 
 Document advice_document(const Advice& advice) {
   return {.title = fmt::format("{}: {}", asked_rig_text(advice), requirements_text(advice)),
-          .head = {advice_answer(advice)},
+          .head = paragraphs(advice_answer(advice)),
           .blocks = {options_block(advice), assumptions_block(advice)}};
 }
 
 Json advice_json(const Advice& advice) {
   Json root = new_document();
   root.update(
-      {{"answer", advice_answer(advice)},
+      {{"answer", answer_json(advice_answer(advice))},
        {"cameras", advice.request.rig.cameras},
        {"rate_hz", advice.request.rig.rate_hz},
        {"requirements", Json::array()},

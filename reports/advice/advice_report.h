@@ -1,10 +1,11 @@
 // Advice for a buyer (evaluation/advice) as text, Markdown or JSON: first a sentence that answers,
 // then the rigs from the cheapest on, then what was assumed.
 //
-// JSON: {"schema_version", "version", "commit", "answer", "cameras", "rate_hz", "requirements":
-// [text], "seeds", "recommended": a place in options or null, "fails_first": {"metric", "stage",
-// "share"} or null, "rare": null or as of rare_json(), "options": [{"rig", "hosts",
-// "cameras_per_host", "parts": [name], "price_low_eur", "price_high_eur", "settled", "pipelines":
+// JSON: {"schema_version", "version", "commit", "answer" (reports/text/answer_json.h), "cameras",
+// "rate_hz", "requirements": [text], "seeds", "recommended": a place in options or null,
+// "fails_first": {"metric", "stage", "share"} or null, "rare": null or as of rare_json(),
+// "options": [{"rig", "hosts", "cameras_per_host", "parts": [name], "price_low_eur",
+// "price_high_eur", "settled", "pipelines":
 // [{"pipeline", "met", "seeds", "probability", "low", "high", "margin", "frames_dropped",
 // "medians": {id: value}}]}]}; the pipelines from the best on.
 #pragma once
@@ -14,13 +15,13 @@
 
 #include "evaluation/advice/advice.h"
 #include "evaluation/rare/splitting.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
 
-// The answer in a sentence or two.
-std::string advice_answer(const evaluation::Advice& advice);
+AnswerText advice_answer(const evaluation::Advice& advice);
 
 Document advice_document(const evaluation::Advice& advice);
 // To which file_text() may be applied.

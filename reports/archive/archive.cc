@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -181,7 +182,8 @@ void read_ground_truth(const JsonNode& node, Row& row) {
 
 void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::Metric& metric,
                  Row& row) {
-  if (metric.is_new && !row_node.has(metric.member())) {
+  if (metric.is_count() && metric.is_new && !row_node[metric.json_in].has(metric.member())) return;
+  if (metric.is_new && !metric.is_count() && !row_node.has(metric.member())) {
     metric.series(row) = evaluation::make_series(std::vector<double>(seeds, evaluation::kNan));
     return;
   }
@@ -270,6 +272,23 @@ void read_paper_part(const JsonNode& root, evaluation::Results& results) {
   }
 }
 
+// Archives of simbench 0.1 lack the member: steered exposures and clocks rank as now.
+evaluation::RankedBy read_ranked_by(const JsonNode& root, const evaluation::Results& results) {
+  using evaluation::RankedBy;
+  if (results.kind == evaluation::ResultKind::kClockRuns) return RankedBy::kClockSpread;
+  if (!root.has(kRankedByMember)) {
+    const bool is_steered = std::ranges::any_of(
+        results.rows, [](const Row& row) { return !row.capture_alignment.empty(); });
+    return is_steered ? RankedBy::kExposureSpread : RankedBy::kAmd;
+  }
+  const std::optional<RankedBy> named = evaluation::ranked_by_named(root[kRankedByMember].text());
+  if (!named) {
+    root[kRankedByMember].refuse(
+        fmt::format("one of {}", fmt::join(evaluation::ranking_metrics(), ", ")));
+  }
+  return *named;
+}
+
 evaluation::Results read_results(const JsonNode& root) {
   evaluation::Results results;
   results.kind = read_result_kind(root, "kind");
@@ -284,9 +303,15 @@ evaluation::Results read_results(const JsonNode& root) {
     results.rows.push_back(is_of_clocks ? read_clock_row(row, results.seed_count)
                                         : read_row(row, results.seed_count));
   }
+  results.ranked_by = read_ranked_by(root, results);
   if (!is_of_clocks) read_paper_part(root, results);
   for (const JsonNode& warning : root["warnings"].elements()) {
     results.warnings.push_back(warning.text());
+  }
+  if (root.has(kLossReasonsMember)) {
+    for (const JsonNode& reason : root[kLossReasonsMember].elements()) {
+      results.loss_reasons.push_back(reason.text());
+    }
   }
   const JsonNode cost = root["performance"];
   results.performance = {

@@ -21,11 +21,11 @@ constexpr double kMostlyConstant = 0.5;  // of the largest time error
 std::string closest_sentence(const Answer& answer) {
   const Row& best = *answer.best;
   return fmt::format("{} {}: {} apart, mean in time (5-95 %: {}).", best.pipeline,
-                     answer.runnable == 1
+                     answer.ranked == 1
                          ? "is the only host_sync here that a rig can run, and keeps the clocks"
                          : fmt::format("keeps the clocks closest together of the {} that a rig can "
                                        "run",
-                                       answer.runnable),
+                                       answer.ranked),
                      time_text(best.clock_spread_ms.median),
                      time_band_text(best.clock_spread_ms.p05, best.clock_spread_ms.p95));
 }
@@ -77,16 +77,21 @@ std::string without_master_sentence(const Row& row) {
 }  // namespace
 
 AnswerText clock_answer(const evaluation::Results& results) {
-  const Answer answer = evaluation::answer_of(results, evaluation::RankedBy::kClockSpread);
-  if (answer.best == nullptr) return {.lead = "No host_sync that a rig can run has a result here."};
+  const Answer answer = evaluation::answer_of(results);
+  if (answer.best == nullptr) {
+    AnswerText none{.lead = "No host_sync that a rig can run has a result here."};
+    none.add("Failed", failed_text(answer));
+    return none;
+  }
   AnswerText text{.lead = closest_sentence(answer)};
   text.add("Others", distance_text(results, answer));
+  text.add("Failed", failed_text(answer));
   text.add("In sync?", in_sync_sentence(*answer.best));
   text.add("Limit", kind_of_error_sentence(*answer.best));
   text.add("Holdover", without_master_sentence(*answer.best));
   text.add("Cost", fmt::format("It sends {} packets per second.",
                                number_text(answer.best->packets_per_s.median)));
-  text.add("Certainty", uncertainty_text(answer));
+  text.add("Uncertain", uncertainty_text(answer));
   return text;
 }
 

@@ -9,6 +9,7 @@
 
 #include "evaluation/clock_run/clock_score.h"
 #include "recording/version.h"
+#include "reports/results/answer_fields.h"
 #include "reports/results/csv.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
@@ -189,6 +190,7 @@ std::string clock_json(const ClockResults& results) {
   for (std::size_t row = 0; row < of.rows.size(); ++row) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
   }
+  root["answer"] = answer_with_fields(of, clock_answer(of));
   root["performance"] = performance_json(of.performance);
   return file_text(root);
 }

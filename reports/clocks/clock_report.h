@@ -18,7 +18,7 @@
 //              "holdover_ms": {"60", "600"}, "recovery_s", "packets_per_s": median over the seeds,
 //              "metrics": {each metric of a clock run by its id: {"median", "p05", "p95",
 //                "values": [in seed order]}}}],
-//    "warnings", "performance"}
+//    "warnings", "answer" (reports/results/answer_fields.h), "performance"}
 //
 // What it means: evaluation/clock_run/clock_score.h, evaluation/stability/stability.h.
 #pragma once

@@ -8,6 +8,7 @@
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
+#include "reports/text/answer_json.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "scenarios/loader.h"
@@ -304,6 +305,7 @@ VerdictCount count_verdicts(const Comparison& comparison) {
 std::string comparison_json(const Comparison& comparison) {
   Json root = new_document();
   root["scenario"] = comparison.scenario;
+  root["answer"] = answer_json(comparison_answer(comparison));
   state_derivation(comparison.derivation, root);
   root.update({{"a", comparison.a},
                {"b", comparison.b},

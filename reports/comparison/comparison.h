@@ -26,6 +26,7 @@
 
 #include "evaluation/statistics/paired.h"
 #include "reports/archive/archive.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -85,6 +86,8 @@ Comparison compare_pipelines(const Archive& archive, const std::string& a, const
 Comparison compare_with_baseline(const Archive& archive, const std::string& baseline,
                                  const ComparisonOptions& options);
 
+// In how many values B is better or worse, and which.
+AnswerText comparison_answer(const Comparison& comparison);
 // A line for each pipeline and metric, verdicts, notes; with a baseline also in words.
 Document comparison_document(const Comparison& comparison);
 // The texts of the document.

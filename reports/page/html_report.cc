@@ -104,13 +104,6 @@ std::vector<Block> blocks_of(const Archive& archive) {
   return blocks;
 }
 
-evaluation::RankedBy ranked_by_of(const Archive& archive) {
-  if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
-    return evaluation::RankedBy::kClockSpread;
-  }
-  return evaluation::ranked_by(table_kind_of(archive));
-}
-
 // "" of clock runs, whose first table is short.
 std::string archive_summary(const Archive& archive) {
   if (archive.results.kind != evaluation::ResultKind::kCaptures) return "";
@@ -134,12 +127,12 @@ HtmlArticle article_of(const ReportedArchive& reported, std::size_t number,
                        const ReportInput& input) {
   const Archive& archive = reported.archive;
   const bool is_of_clocks = archive.results.kind == evaluation::ResultKind::kClockRuns;
-  const Row* const best = evaluation::answer_of(archive.results, ranked_by_of(archive)).best;
+  const Row* const best = evaluation::answer_of(archive.results).best;
   return {.number = number,
           .name = archive.path,
           .heading = scenarios::named(archive.results.scenario, archive.results.derivation),
           .answer = reported.answer,
-          .lead = overview_html(archive.results, ranked_by_of(archive)),
+          .lead = overview_html(archive.results),
           .lead_figures = {is_of_clocks ? "clocks" : "budget"},
           .lead_pipeline = best == nullptr ? "" : best->pipeline,
           .summary = archive_summary(archive),

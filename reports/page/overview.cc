@@ -101,7 +101,8 @@ std::optional<double> published_of(const Results& results, const Row& row, Ranke
 
 }  // namespace
 
-std::vector<OverviewRow> overview_rows(const Results& results, RankedBy ranked_by) {
+std::vector<OverviewRow> overview_rows(const Results& results) {
+  const RankedBy ranked_by = evaluation::ranking_of(results);
   std::vector<const Row*> drawn;
   std::vector<OverviewRow> rows;
   for (const Row& row : results.rows) {
@@ -116,15 +117,16 @@ std::vector<OverviewRow> overview_rows(const Results& results, RankedBy ranked_b
     OverviewRow line{.row = row,
                      .series = &evaluation::ranked_series(*row, ranked_by),
                      .published_ms = published_of(results, *row, ranked_by)};
-    line.word =
-        row == best ? kBest : evaluation::standing_name(evaluation::standing_by(*row, ranked_by));
+    line.word = row == best
+                    ? kBest
+                    : evaluation::standing_name(evaluation::standing_of(*row, ranked_by).is);
     rows.push_back(std::move(line));
   }
   return rows;
 }
 
-std::string overview_html(const Results& results, RankedBy ranked_by) {
-  std::vector<OverviewRow> rows = overview_rows(results, ranked_by);
+std::string overview_html(const Results& results) {
+  std::vector<OverviewRow> rows = overview_rows(results);
   if (rows.empty()) return "";
   const std::size_t all = rows.size();
   rows.resize(std::min(rows.size(), kMostOverviewRows));
@@ -139,7 +141,8 @@ std::string overview_html(const Results& results, RankedBy ranked_by) {
   axis.widen();
   std::string body;
   for (const OverviewRow& row : rows) body += row_html(row, axis);
-  const std::string what = capitalised(ranked_name(ranked_by));
+  const std::string what =
+      capitalised(evaluation::ranked_metric(evaluation::ranking_of(results)).title);
   return fmt::format(
       "<figure class=\"overview\"><table><caption>{} of each pipeline</caption>\n<tbody>\n"
       "{}{}</tbody></table>\n<figcaption>{}: median (dot) and band from 5 to 95 % over the seeds, "

@@ -24,7 +24,7 @@ using reconstruction::SeedReprojection;
 bool can_run(const ReprojectionRow& row) {
   evaluation::Row choice;
   copy_stages(row, choice);
-  return evaluation::standing_of(choice) == RowStanding::kRunnable;
+  return evaluation::standing_of_stages(choice, evaluation::RankedBy::kAmd) == RowStanding::kRanked;
 }
 
 // Returns the rows that a rig can run and that have an error, the smallest first.
@@ -96,12 +96,12 @@ std::string certainty_text(const ReprojectionRow& best) {
   const std::vector<double> values = errors_by_seed(best, best);
   const std::size_t seeds = evaluation::count_of_existing(values);
   if (seeds < kFewestSeeds) {
-    return fmt::format("Uncertain: {}.", few_seeds_text(seeds));
+    return fmt::format("{}.", few_seeds_text(seeds));
   }
   const double relative =
       evaluation::median_interval(values, static_cast<std::int64_t>(seeds)).relative;
   if (std::isnan(relative)) return "";
-  return fmt::format("Uncertain: the median of {} is known to {:.0f} %.", counted(seeds, "seed"),
+  return fmt::format("The median of {} is known to {:.0f} %.", counted(seeds, "seed"),
                      std::ceil(100 * relative));
 }
 
@@ -118,7 +118,7 @@ AnswerText reconstruction_answer(const ReconstructionResults& results) {
                           desync_text(best.desync_ms().median))};
   answer.add("Others", others_text(sorted));
   answer.add("Tolerance", tolerance_text(results));
-  answer.add("Certainty", certainty_text(best));
+  answer.add("Uncertain", certainty_text(best));
   return answer;
 }
 

@@ -9,6 +9,7 @@
 #include "recording/version.h"
 #include "reports/recordings/diagnose_answer.h"
 #include "reports/recordings/diagnose_figure.h"
+#include "reports/text/answer_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
@@ -216,6 +217,7 @@ std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::str
                {"version", version()},
                {"commit", commit()},
                {"files", files},
+               {"answer", answer_json(diagnose_answer(diagnosis))},
                {"verdict", verdict_json(diagnosis.verdict)},
                {"streams", Json::array()},
                {"cameras", Json::array()},

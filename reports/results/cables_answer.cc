@@ -22,9 +22,9 @@ constexpr double kGoalsMs[] = {1, 0.1, 0.01};
 std::vector<const Row*> rows_without_cable(const Results& results) {
   std::vector<const Row*> rows;
   for (const Row& row : results.rows) {
-    const bool is_runnable =
-        evaluation::standing_by(row, RankedBy::kExposureSpread) == RowStanding::kRunnable;
-    if (is_runnable && !std::isnan(row.exposure_spread_p95_ms.median)) rows.push_back(&row);
+    const bool is_ranked =
+        evaluation::standing_of(row, RankedBy::kExposureSpread).is == RowStanding::kRanked;
+    if (is_ranked && !std::isnan(row.exposure_spread_p95_ms.median)) rows.push_back(&row);
   }
   return rows;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algorithms/ports/stage.h"
+#include "evaluation/answer/standing.h"
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/results_document.h"
@@ -53,7 +54,7 @@ std::vector<std::string> header(const std::vector<StageInfo>& stages) {
                {"published_amd_ms", "published_amd_inside", "published_amd_percentile",
                 "published_rmdv_ms", "published_rmdv_inside", "published_rmdv_attainable"});
   add_names(CsvForm::kValueAtEnd, names);
-  names.emplace_back("scored_seeds");
+  names.insert(names.end(), {"scored_seeds", "standing", "failed"});
   return names;
 }
 
@@ -121,6 +122,7 @@ std::string csv(const evaluation::Results& results) {
   if (has_figures) names.emplace_back("published_figures");
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
   const LineEnds ends(results.derivation);
+  const evaluation::RankedBy ranked_by = evaluation::ranking_of(results);
   std::string out = fmt::format("{}{}", fmt::join(names, ","), ends.header);
   for (const Row& row : results.rows) {
     std::vector<std::string> cells = {csv_cell(row.pipeline)};
@@ -131,6 +133,9 @@ std::string csv(const evaluation::Results& results) {
     cells.insert(cells.end(), published.begin(), published.end());
     add_cells(CsvForm::kValueAtEnd, row, cells);
     cells.push_back(std::to_string(evaluation::scored_seeds(row)));
+    const evaluation::ReasonedStanding standing = evaluation::standing_of(row, ranked_by);
+    cells.emplace_back(evaluation::standing_id(standing.is));
+    cells.push_back(csv_cell(standing.reason));
     if (has_figures) cells.push_back(figures_cell(results, row));
     if (real) {
       cells.insert(cells.end(),

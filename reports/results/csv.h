@@ -12,12 +12,12 @@
 namespace simbench::reports {
 
 // One line per pipeline: the metrics in the columns of evaluation/scoring/metrics.h, with the
-// published values before those of CsvForm::kValueAtEnd, and scored_seeds as in json.h. If
-// something steers the exposures of a row, a column capture_alignment after host_sync. If there are
-// published figures of other metrics, a column published_figures after scored_seeds: those of the
-// pipeline with their verdicts ("amd_ms at_most 2.5 holds"; none: too few seeds to tell). If a row
-// is not of a simulation or has notes, three more columns: ground_truth (as in
-// reports/results/json.h), verified
+// published values before those of CsvForm::kValueAtEnd, and scored_seeds, standing and failed as
+// in json.h. If something steers the exposures of a row, a column capture_alignment after
+// host_sync. If there are published figures of other metrics, a column published_figures after
+// failed: those of the pipeline with their verdicts ("amd_ms at_most 2.5 holds"; none: too few
+// seeds to tell). If a row is not of a simulation or has notes, three more columns: ground_truth
+// (as in reports/results/json.h), verified
 // ("verified" or "unverified") and notes. If the scenario's world is a changed one, a last column:
 // changed, the same text in each line ("changed: /trigger/rate_hz 45 → 30").
 std::string csv(const evaluation::Results& results);

@@ -4,9 +4,12 @@
 #include <string_view>
 
 #include "algorithms/ports/stage.h"
+#include "evaluation/answer/standing.h"
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
+#include "reports/results/answer_fields.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/results_answer.h"
 
 namespace simbench::reports {
 
@@ -42,7 +45,7 @@ Json metric_json(const evaluation::Metric& metric, const evaluation::Row& row) {
   return metric.is_known(row) ? Json(metric.count(row)) : Json();
 }
 
-Json row_json(const evaluation::Row& row) {
+Json row_json(const evaluation::Row& row, evaluation::RankedBy ranked_by) {
   Json all = {{"pipeline", row.pipeline}};
   for (const StageInfo& stage : kPipelineStages) {
     if (!stage.may_be_absent) all[stage.name] = at_stage(row, stage.id);
@@ -61,6 +64,9 @@ Json row_json(const evaluation::Row& row) {
   all["ground_truth"] = ground_truth_name(row.ground_truth);
   all["verified"] = row.verified();
   all["notes"] = row.notes;
+  const evaluation::ReasonedStanding standing = evaluation::standing_of(row, ranked_by);
+  all["standing"] = evaluation::standing_id(standing.is);
+  all["failed"] = standing.reason.empty() ? Json() : Json(standing.reason);
   all["published"] = published_json(row.published);
   return all;
 }
@@ -153,13 +159,19 @@ std::string json(const evaluation::Results& results) {
   root["scenario"] = results.scenario;
   state_derivation(results.derivation, root);
   if (results.draws_load) root[kOwnLoadMember] = true;
+  const evaluation::RankedBy ranked_by = evaluation::ranking_of(results);
   root.update({{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
+               {kRankedByMember, evaluation::ranked_metric(ranked_by).id},
                {"rows", Json::array()},
                {"claims", Json::array()},
                {"asymmetry_floor", floor_json(results.asymmetry_floor)},
-               {"warnings", results.warnings}});
-  for (const evaluation::Row& row : results.rows) root["rows"].push_back(row_json(row));
+               {"warnings", results.warnings},
+               {kLossReasonsMember, results.loss_reasons}});
+  for (const evaluation::Row& row : results.rows) {
+    root["rows"].push_back(row_json(row, ranked_by));
+  }
   state_published_figures(results, root);
+  root["answer"] = answer_with_fields(results, results_answer(results, nullptr));
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
   root["performance"] = performance_json(results.performance);
   return file_text(root);

@@ -11,6 +11,7 @@
 //    each
 //      pipeline: in that part rows of one seed are not of one world,
 //    "seeds": {"first": 1, "count": 32},
+//    "ranked_by": the metric that ranks the rows (evaluation/scoring/ranked_by.h), "amd_ms",
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
 //              "capture_alignment": what steers the exposures, only if something does,
 //              "offline": whether device_time needs the whole recording,
@@ -22,13 +23,17 @@
 //              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
 //                known which frames belong together (else "evaluated_pulses" counts sets; what
 //                needs pulses is null), "notes": [failures, "repetition 3: ..."],
-//              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside" (null: too
+//              "standing": "ranked", "failed", "limit" or "reference"
+//              (evaluation/answer/standing.h), "failed": null, or why, "published": null or
+//              {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside" (null: too
 //                few seeds to tell),
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
 //                rmdv_percentile likewise}}],
+//    "answer": reports/results/answer_fields.h,
 //    "claims": [{"id", "holds_fraction", "text", "needs", "decided_seeds"}],
 //    "asymmetry_floor": null or {"sigma_ms", "host_error_ms", "amd_ms"}
 //      (evaluation/scoring/asymmetry_floor.h), "warnings": [...],
+//    "loss_reasons": [what makes pulses be lost in this world],
 //    "performance": {"events", "events_per_second", "simulated_seconds_per_second", ...}}
 #pragma once
 
@@ -44,6 +49,8 @@ namespace simbench::reports {
 
 // The schema of manifest.json and results.json: the written one, and the newest that can be read.
 inline constexpr int kArchiveSchemaVersion = 1;
+inline constexpr const char* kRankedByMember = "ranked_by";
+inline constexpr const char* kLossReasonsMember = "loss_reasons";
 inline constexpr const char* kOwnLoadMember = "own_load_of_pipelines";
 
 // Whether a value at this percentile is inside; null with too few seeds to tell.

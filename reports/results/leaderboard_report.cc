@@ -99,12 +99,14 @@ std::string composition(const Board& board) {
 
 std::string order_legend(const Results& results) {
   return fmt::format(
-      "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's clock|. "
-      "Ratios are medians over the seeds, seed by seed: to the row of the board with the oracle in "
+      "Each board is in order of what its rows differ in: host synchronisations of the host clock "
+      "error, gatherings of recall, others of {}. absolute error: mean |global stamp - true "
+      "mid-exposure on the master's clock|; what all rows share is in it. Ratios are medians over "
+      "the seeds, seed by seed: to the row of the board with the oracle in "
       "its place, and to the paper's proposal. packets per s: messages that all hosts sent, from "
       "the start of host synchronisation to the end of the capture. {} Online stamps a frame when "
       "it arrives; offline needs the whole recording.",
-      shared_worlds(results));
+      evaluation::ranked_metric(evaluation::ranking_of(results)).title, shared_worlds(results));
 }
 
 Json ranks_json(const std::vector<Rank>& ranks) {

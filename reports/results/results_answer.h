@@ -3,7 +3,7 @@
 // most, and what is uncertain. Every sentence is computed from the results; what they do not hold
 // has none.
 //
-//   const AnswerText first = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);
+//   const AnswerText first = results_answer(all_results, nullptr);
 #pragma once
 
 #include <string>
@@ -16,14 +16,15 @@
 namespace simbench::reports {
 
 // `budget`: of the best pipeline; null: unknown, and nothing is said about it.
-AnswerText results_answer(const evaluation::Results& results, evaluation::RankedBy ranked_by,
-                          const evaluation::Budget* budget);
+AnswerText results_answer(const evaluation::Results& results, const evaluation::Budget* budget);
 
 // Its sentences that other answers have too; `answer` has a best pipeline.
 //
 // Which pipelines cannot be told from the best, the next one, and the paper's; "" if there are
 // none.
 std::string distance_text(const evaluation::Results& results, const evaluation::Answer& answer);
+// Which pipelines failed, and why; "" if none did.
+std::string failed_text(const evaluation::Answer& answer);
 // What these seeds leave open; "" if that is little.
 std::string uncertainty_text(const evaluation::Answer& answer);
 
@@ -36,8 +37,5 @@ std::string uncertainty_text(const evaluation::Answer& answer);
 std::string cables_text(const evaluation::Results& results);
 // What the rows that follow a trigger have; "" if there are none.
 std::string cable_sentence(const evaluation::Results& results);
-
-// The name of what an answer ranks by: "AMD".
-const char* ranked_name(evaluation::RankedBy ranked_by);
 
 }  // namespace simbench::reports

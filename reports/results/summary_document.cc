@@ -60,14 +60,14 @@ void add_published_amd(const Results& results, RowFields& fields) {
        }});
 }
 
-// What a row is among those of its table: the best that a rig can run, a limit, a reference.
+// What a row is among those of its table: the best, failed, a limit, a reference.
 Field<Row> standing_field(const std::vector<const Row*>& rows, RankedBy ranked_by) {
   const Row* const best = evaluation::best_of(rows, ranked_by);
   return {{.header = "is", .align = Align::kLeft, .is_verdict = true},
           [best, ranked_by](const Row& row) {
             return &row == best
                        ? "best"
-                       : evaluation::standing_name(evaluation::standing_by(row, ranked_by));
+                       : evaluation::standing_name(evaluation::standing_of(row, ranked_by).is);
           }};
 }
 
@@ -103,7 +103,7 @@ Block rows_block(const Results& results) {
   std::vector<const Row*> rows = pointers_to(results.rows);
   Block block;
   shorten(rows, kMostSummaryRows, block);
-  block.table = table_of(summary_fields(results, rows, RankedBy::kAmd), rows);
+  block.table = table_of(summary_fields(results, rows, evaluation::ranking_of(results)), rows);
   return block;
 }
 
@@ -132,8 +132,7 @@ Block board_block(const Results& results, const Board& board) {
   }
   Block block;
   shorten(rows, kMostRowsOfBoard, block);
-  const RankedBy ranked_by = RankedBy::kAbsoluteError;
-  block.table = table_of(summary_fields(results, rows, ranked_by), rows);
+  block.table = table_of(summary_fields(results, rows, board.ranked_by), rows);
   return block;
 }
 

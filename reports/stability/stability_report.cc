@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "recording/counted.h"
+#include "reports/text/answer_json.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -149,8 +151,38 @@ void add_stability(Json& object, const Stability& stability) {
     object[curve.id] = points_json(stability.*curve.points);
 }
 
+AnswerText stability_answer(const std::vector<LogStability>& files) {
+  if (files.empty()) return {};
+  const auto largest_te = [](const LogStability& file) {
+    return file.stability.time_error.max_te_ms;
+  };
+  const auto worst = std::ranges::max_element(files, {}, largest_te);
+  const evaluation::TimeErrorSummary& size = worst->stability.time_error;
+  AnswerText answer{.lead = files.size() == 1
+                                ? fmt::format("The largest time error of {} is {}.", worst->file,
+                                              time_text(size.max_te_ms))
+                                : fmt::format("Of {}, {} has the largest time error: {}.",
+                                              counted(files.size(), "clock"), worst->file,
+                                              time_text(size.max_te_ms))};
+  answer.add("Parts", fmt::format("Its mean is {}, what changes around it {} (RMS).",
+                                  time_text(size.constant_te_ms), time_text(size.dynamic_te_ms)));
+  std::int64_t steps = 0;
+  std::int64_t gaps = 0;
+  for (const LogStability& file : files) {
+    steps += static_cast<std::int64_t>(file.stability.steps.size());
+    gaps += gaps_of(file);
+  }
+  if (steps + gaps > 0) {
+    answer.add("Breaks",
+               fmt::format("{} and {} in all.", counted(static_cast<std::uint64_t>(steps), "step"),
+                           counted(static_cast<std::uint64_t>(gaps), "gap")));
+  }
+  return answer;
+}
+
 Document stability_document(const std::vector<LogStability>& files) {
-  Document document{.title = "stability of " + counted(files.size(), "measured clock")};
+  Document document{.title = "stability of " + counted(files.size(), "measured clock"),
+                    .head = paragraphs(stability_answer(files))};
   document.blocks.push_back({.heading = "Time error (TE)", .table = files_table(files)});
   for (const LogStability& file : files) {
     Block block{.heading = file.file};
@@ -199,6 +231,7 @@ std::string stability_csv(const std::vector<LogStability>& files) {
 
 std::string stability_json(const std::vector<LogStability>& files) {
   Json root = new_document();
+  root["answer"] = answer_json(stability_answer(files));
   root["files"] = Json::array();
   for (const LogStability& file : files) root["files"].push_back(file_json(file));
   return file_text(root);

@@ -2,7 +2,7 @@
 // results.
 //
 // JSON, schema_version 1 (what does not exist is left out of a list, or null):
-//   {"schema_version", "version", "commit",
+//   {"schema_version", "version", "commit", "answer" (reports/text/answer_json.h),
 //    "files": [{"file", "format", "first_s", "interval_s", "points", "left_out", "gaps",
 //               "longest_gap_s", "frequency_offset_ppb",
 //               "max_te_ms", "rms_te_ms", "constant_te_ms", "dynamic_te_ms", "dynamic_te_p2p_ms",
@@ -20,12 +20,15 @@
 #include <vector>
 
 #include "evaluation/stability/log_stability.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
 
-// A section for all files, and one for each.
+// The largest time error of the files, its parts, and what breaks them.
+AnswerText stability_answer(const std::vector<evaluation::LogStability>& files);
+// The answer, a section for all files, and one for each.
 Document stability_document(const std::vector<evaluation::LogStability>& files);
 std::string stability_csv(const std::vector<evaluation::LogStability>& files);
 std::string stability_json(const std::vector<evaluation::LogStability>& files);

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "evaluation/answer/answer.h"
 #include "evaluation/sweep/ranking.h"
+#include "evaluation/sweep/sweep_standing.h"
 #include "reports/sweep/sweep_parts.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/number_text.h"
@@ -35,26 +35,23 @@ struct RunnablePart {
   std::vector<ResponseRow> rows{};
 };
 
-std::vector<bool> runnable_pipelines(const SweepPlan& plan) {
+std::vector<bool> runnable_pipelines(const SweepPlan& plan, RankedBy ranked_by) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario_text(plan.scenario_json, "the sweep's scenario");
-  const RankedBy by = of_clocks(plan) ? RankedBy::kClockSpread : RankedBy::kAbsoluteError;
   std::vector<bool> runnable;
   for (const std::string& name : plan.pipelines) {
     const auto found = std::ranges::find(scenario.pipelines, name, &scenarios::Pipeline::name);
     evaluation::Row row;
-    if (found != scenario.pipelines.end()) {
-      row.host_sync = found->host_sync;
-      row.device_time = found->device_time;
-      row.gathering = found->gathering;
-    }
-    runnable.push_back(evaluation::standing_by(row, by) == evaluation::RowStanding::kRunnable);
+    if (found != scenario.pipelines.end()) copy_stages(*found, row);
+    runnable.push_back(evaluation::standing_of_stages(row, ranked_by) ==
+                       evaluation::RowStanding::kRanked);
   }
   return runnable;
 }
 
-RunnablePart runnable_part(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const std::vector<bool> runnable = runnable_pipelines(plan);
+RunnablePart runnable_part(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                           RankedBy ranked_by) {
+  const std::vector<bool> runnable = runnable_pipelines(plan, ranked_by);
   RunnablePart part{.plan = plan};
   part.plan.pipelines.clear();
   std::vector<std::size_t> places;
@@ -62,10 +59,10 @@ RunnablePart runnable_part(const SweepPlan& plan, const std::vector<ResponseRow>
     places.push_back(part.plan.pipelines.size());
     if (runnable[i]) part.plan.pipelines.push_back(plan.pipelines[i]);
   }
-  for (const ResponseRow& row : rows) {
+  for (ResponseRow& row : evaluation::without_failed(rows, ranked_by)) {
     if (!runnable[row.pipeline]) continue;
-    part.rows.push_back(row);
-    part.rows.back().pipeline = places[row.pipeline];
+    row.pipeline = places[row.pipeline];
+    part.rows.push_back(std::move(row));
   }
   return part;
 }
@@ -144,7 +141,8 @@ class Winner {
       const double whole = row->value(recall);
       if (std::isnan(pure) || std::isnan(whole)) continue;
       ++known;
-      if (pure == 1 && whole == 1) ++sound;
+      const bool all_came = row->of("complete_pulses").median == row->of("due_pulses").median;
+      if (pure == 1 && whole == 1 && all_came) ++sound;
     }
     if (known == 0) return "";
     return fmt::format(
@@ -164,10 +162,10 @@ class Winner {
           evaluation::median_interval(values, static_cast<std::int64_t>(seeds)).relative;
       if (!std::isnan(relative)) widest = std::max(widest, relative);
     }
-    std::string text = fewest < kFewestSeeds
-                           ? "Uncertain: " + few_seeds_text(fewest, " of a point")
-                           : fmt::format("Uncertain: the medians are known to {:.0f} % or better",
-                                         std::ceil(100 * widest));
+    std::string text =
+        fewest < kFewestSeeds
+            ? few_seeds_text(fewest, " of a point")
+            : fmt::format("The medians are known to {:.0f} % or better", std::ceil(100 * widest));
     const std::size_t without = part_.plan.points() - rows_.size();
     if (without > 0) text += fmt::format("; {} without a value", counted(without, "point"));
     return text + ".";
@@ -229,9 +227,10 @@ std::string flips_text(const SweepPlan& plan, const Ranking& ranking) {
 }  // namespace
 
 AnswerText sweep_answer(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const RunnablePart part = runnable_part(plan, rows);
+  const RankedBy ranked_by = evaluation::ranking_of(plan, rows);
+  const RunnablePart part = runnable_part(plan, rows, ranked_by);
   if (part.plan.pipelines.empty()) return {.lead = "No pipeline here is one that a rig can run."};
-  const Metric& metric = ranked_metric(plan);
+  const Metric& metric = evaluation::ranked_metric(ranked_by);
   const Ranking ranking = evaluation::rank(part.plan, part.rows, metric);
   const Winner winner(part, metric, most_often_first(ranking, part.plan.pipelines.size()));
   if (!winner.exists()) {
@@ -243,7 +242,7 @@ AnswerText sweep_answer(const SweepPlan& plan, const std::vector<ResponseRow>& r
   answer.add("Order", flips_text(part.plan, ranking));
   answer.add("Effect", winner.what_matters());
   answer.add("Sets", winner.sets());
-  answer.add("Certainty", winner.certainty());
+  answer.add("Uncertain", winner.certainty());
   return answer;
 }
 

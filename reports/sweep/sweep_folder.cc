@@ -66,8 +66,9 @@ void replace_file(const fs::path& path, std::string_view content) {
 
 constexpr const char* kLog = "runs.log";
 constexpr const char* kLock = "lock";
-constexpr std::array<const char*, 8> kSweepFiles = {
-    kManifest, kLog, kLock, "sweep.csv", "hosts.csv", "sweep.txt", "sweep.svg", "sweep.html"};
+constexpr std::array<const char*, 9> kSweepFiles = {kManifest,   kLog,         kLock,
+                                                    "sweep.csv", "hosts.csv",  "sweep.txt",
+                                                    "sweep.svg", "sweep.html", "answer.json"};
 constexpr const char* kWayOut =
     "name another folder, repeat that sweep's command, or replace it with --restart";
 

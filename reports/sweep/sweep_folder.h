@@ -4,7 +4,8 @@
 //   manifest.json   the sweep: scenario, axes, pipelines, seeds, program; no clock times
 //   runs.log        finished runs
 //   and, once all runs are finished, the results: sweep.csv, hosts.csv, sweep.txt, sweep.html,
-//   sweep.svg
+//   sweep.svg, answer.json: the answer for programs (reports/text/answer_json.h), with "scenario"
+//   and "ranked_by", the metric
 //
 // The manifest identifies the sweep: a folder of another sweep, or with any other file, is refused.
 // The folder is locked during the lifetime of a SweepFolder; the lock file `lock` stays.

@@ -6,6 +6,7 @@
 
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/sweep/ranking.h"
+#include "evaluation/sweep/sweep_standing.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/metric_columns.h"
@@ -46,11 +47,6 @@ std::vector<const ResponseRow*> by_packets(const std::vector<ResponseRow>& rows,
 
 }  // namespace
 
-const Metric& ranked_metric(const SweepPlan& plan) {
-  return of_clocks(plan) ? evaluation::metric("clock_spread_ms", plan.kind)
-                         : evaluation::metric("absolute_error_ms");
-}
-
 std::string leading_text(const SweepPlan& plan, std::size_t point) {
   std::vector<std::string> texts;
   for (const scenarios::Override& value : plan.overrides(point)) {
@@ -69,8 +65,9 @@ std::string flip_text(const SweepPlan& plan, const RankingFlip& flip) {
 }
 
 Block ranking_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const Metric& metric = ranked_metric(plan);
-  const Ranking ranking = evaluation::rank(plan, rows, metric);
+  const evaluation::RankedBy by = evaluation::ranking_of(plan, rows);
+  const Metric& metric = evaluation::ranked_metric(by);
+  const Ranking ranking = evaluation::rank(plan, evaluation::without_failed(rows, by), metric);
   std::vector<Column> columns = value_columns(plan);
   const std::size_t keys = columns.size();
   columns.push_back({"best first", Align::kLeft});
@@ -94,7 +91,7 @@ Block ranking_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows)
 }
 
 Block packets_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const Metric& metric = ranked_metric(plan);
+  const Metric& metric = evaluation::ranked_metric(evaluation::ranking_of(plan, rows));
   const MetricColumn column = column_of(metric, plan.kind);
   Table table(
       {{"pipeline", Align::kLeft}, {"packets\nper s"}, {column.heading}, {column.band_heading}}, 1);
@@ -117,7 +114,7 @@ Block packets_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows)
 }
 
 Figure packets_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const Metric& metric = ranked_metric(plan);
+  const Metric& metric = evaluation::ranked_metric(evaluation::ranking_of(plan, rows));
   Figure figure = new_sweep_figure(plan, "sweep_packets", "error over packets per second");
   FigurePanel panel = {.title = capitalised(metric.title),
                        .x_label = "packets per second of all hosts together",

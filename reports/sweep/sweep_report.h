@@ -37,14 +37,12 @@ std::string sweep_hosts_csv(const evaluation::SweepPlan& plan,
 
 // Which pipeline that a rig can run is best at how many points and between which values, where two
 // change places, which swept parameter matters most, whether its sets can be trusted, and how
-// certain that is. Pipelines that need the truth, and references, are left out
-// (evaluation/answer/answer.h). `rows`, here and below: response(plan, ...). Throws what
-// scenarios::load_scenario_text() throws of the plan's scenario.
+// certain that is. Pipelines that need the truth, and references, are left out, and those that
+// failed at a point have no value there (evaluation/sweep/sweep_standing.h). `rows`, here and
+// below: response(plan, ...). Throws what scenarios::load_scenario_text() throws of the plan's
+// scenario.
 AnswerText sweep_answer(const evaluation::SweepPlan& plan,
                         const std::vector<evaluation::ResponseRow>& rows);
-
-// What pipelines compete for.
-const evaluation::Metric& ranked_metric(const evaluation::SweepPlan& plan);
 
 // A point by the first pointer of each axis; what goes in lockstep with it is in the table.
 std::string leading_text(const evaluation::SweepPlan& plan, std::size_t point);

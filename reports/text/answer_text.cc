@@ -20,9 +20,11 @@ void AnswerText::add(std::string label, std::string text) {
 
 std::vector<std::string> paragraphs(const AnswerText& answer) {
   if (answer.lead.empty()) return {};
-  std::string text = answer.lead;
-  for (const AnswerPoint& point : answer.points) text.append(" ").append(point.text);
-  return {std::move(text)};
+  std::vector<std::string> lines = {answer.lead};
+  for (const AnswerPoint& point : answer.points) {
+    lines.push_back(fmt::format("{}: {}", point.label, point.text));
+  }
+  return lines;
 }
 
 std::string html(const AnswerText& answer) {

@@ -1,9 +1,9 @@
 // The answer that a report begins with: one sentence, then what else a reader wants to know at
 // once.
 //
-// A terminal has it as one paragraph, a page as the first sentence in larger type and a line for
-// each of the rest, under its label. Labels are a word or two; without them the texts are whole
-// sentences, so that both read well. All of it is computed from results.
+// Terminal, files and pages have the same: the lead, then a line for each of the rest, behind its
+// label ("Sets: none of 960 mixes pulses."). Labels are a word or two; without them the texts are
+// whole sentences. All of it is computed from results.
 //
 //   AnswerText answer{.lead = "chrony is best: 0.155 ms."};
 //   answer.add("Uncertain", "1 seed says little about other worlds.");
@@ -29,14 +29,14 @@ struct AnswerPoint {
 };
 
 struct AnswerText {
-  std::string lead{};  // a sentence; empty: there is no answer
+  std::string lead{};  // a sentence or two; empty: there is no answer
   std::vector<AnswerPoint> points{};
 
   // Nothing is added for an empty text.
   void add(std::string label, std::string text);
 };
 
-// One paragraph, for the head of a document; none without an answer.
+// The lead and a line for each point, for the head of a document; none without an answer.
 std::vector<std::string> paragraphs(const AnswerText& answer);
 
 // "" without an answer.

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "bags/bag.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::bags {

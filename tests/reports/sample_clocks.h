@@ -43,6 +43,7 @@ inline evaluation::ClockResults sample_clock_results() {
   evaluation::ClockResults all;
   evaluation::Results& results = all.results;
   results.kind = evaluation::ResultKind::kClockRuns;
+  results.ranked_by = evaluation::RankedBy::kClockSpread;
   results.clock_period = {.from_s = 300, .duration_s = 36'000};
   results.scenario = "6host_star";
   results.first_seed = 4;

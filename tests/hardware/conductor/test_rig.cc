@@ -7,7 +7,9 @@
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <fstream>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "tests/free_port.h"

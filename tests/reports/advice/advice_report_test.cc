@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/reports/whole_text.h"
+
 namespace simbench::reports {
 namespace {
 
@@ -61,7 +63,7 @@ Advice sample() {
 }
 
 TEST(AdviceReport, AnswersWithTheRecommendedRig) {
-  const std::string answer = advice_answer(sample());
+  const std::string answer = whole_text(advice_answer(sample()));
   EXPECT_THAT(answer, HasSubstr("meets amd<0.1ms for 8 cameras at 60 Hz in 72 of 72 simulated"));
   EXPECT_THAT(answer, HasSubstr("with pps.poll.yoon2021"));
   EXPECT_THAT(answer, HasSubstr("price class middle (1500-3000 EUR)"));
@@ -74,9 +76,28 @@ TEST(AdviceReport, NamesTheNearestWhereNoneMeetsIt) {
   advice.recommended.reset();
   advice.options.pop_back();
   advice.options.back() = option(2, 1500, pipeline(60, 72, 0.9), true);
-  EXPECT_THAT(advice_answer(advice),
+  EXPECT_THAT(advice_answer(advice).lead,
               testing::AllOf(StartsWith("None of 2 rigs meets amd<0.1ms for 8 cameras at 60 Hz"),
                              HasSubstr("60 of 72 simulated rigs do, at a margin of 0.9")));
+}
+
+// 69 of 72 are 95.8 %, but as few as 88 % of all rigs may do.
+TEST(AdviceReport, AShareOfNinetyFivePercentIsNotShownByItsInterval) {
+  Advice advice = sample();
+  advice.recommended.reset();
+  advice.options = {option(2, 1500, pipeline(69, 72, 1.1), true)};
+  EXPECT_THAT(advice_answer(advice).lead,
+              testing::AllOf(StartsWith("No rig is shown to meet amd<0.1ms"),
+                             HasSubstr("69 of 72 simulated rigs do, a probability of 88 to 99 %")));
+  EXPECT_EQ(advice_document(advice).blocks[0].table->rows[0][3], "perhaps");
+}
+
+TEST(AdviceReport, AMarginWithoutAValueSaysSo) {
+  Advice advice = sample();
+  advice.recommended.reset();
+  advice.options = {option(2, 1500, pipeline(0, 72, evaluation::kNan), true)};
+  EXPECT_THAT(advice_answer(advice).lead, HasSubstr("at no margin, since a metric that is asked"));
+  EXPECT_EQ(advice_document(advice).blocks[0].table->rows[0][3], "no");
 }
 
 TEST(AdviceReport, HasAVerdictForEachRig) {
@@ -90,7 +111,7 @@ TEST(AdviceReport, HasAVerdictForEachRig) {
   ASSERT_EQ(table.rows.size(), 4U);
   EXPECT_EQ(table.rows[0][3], "no");
   EXPECT_EQ(table.rows[1][3], "yes");
-  EXPECT_EQ(table.rows[2][3], "perhaps");
+  EXPECT_EQ(table.rows[2][3], "perhaps") << "8 of 8 are too few for 95 %";
   EXPECT_EQ(table.rows[3][3], "no: USB drops frames");
   EXPECT_THAT(plain(document), HasSubstr("pps + poll + yoon2021"));
 }
@@ -104,7 +125,8 @@ TEST(AdviceReport, StatesEachPartOnce) {
 TEST(AdviceReport, IsJson) {
   const auto json = nlohmann::json::parse(file_text(advice_json(sample())));
   EXPECT_EQ(json["schema_version"], 1);
-  EXPECT_EQ(json["answer"], advice_answer(sample()));
+  EXPECT_EQ(json["answer"]["lead"], advice_answer(sample()).lead);
+  EXPECT_EQ(json["answer"]["lines"][1]["label"], "Margin");
   EXPECT_EQ(json["cameras"], 8);
   EXPECT_EQ(json["rate_hz"], 60);
   EXPECT_EQ(json["requirements"][0], "amd<0.1ms");

@@ -2,6 +2,7 @@
 
 #include "reports/clocks/clock_report.h"
 #include "tests/reports/sample_clocks.h"
+#include "tests/reports/whole_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -11,7 +12,7 @@ using testing::Not;
 using testing::StartsWith;
 
 std::string clock_answer_of(const evaluation::Results& results) {
-  return paragraphs(clock_answer(results)).front();
+  return whole_text(clock_answer(results));
 }
 
 // "good" has 0.5, 1 and 3 ms of everything, and comes below 0.1 ms in one seed of three.

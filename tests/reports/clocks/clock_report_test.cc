@@ -31,9 +31,10 @@ std::vector<std::string> members_of(const ClockJson& object) {
 
 TEST(ClockJson, SaysWhatItIs) {
   const ClockJson root = ClockJson::parse(clock_json(sample_clock_results()));
-  EXPECT_THAT(members_of(root),
-              ElementsAre("schema_version", "kind", "version", "commit", "scenario", "seeds",
-                          "duration_s", "from_s", "interval_s", "rows", "warnings", "performance"));
+  EXPECT_THAT(
+      members_of(root),
+      ElementsAre("schema_version", "kind", "version", "commit", "scenario", "seeds", "duration_s",
+                  "from_s", "interval_s", "rows", "warnings", "answer", "performance"));
   EXPECT_EQ(root["kind"], "clocks");
   EXPECT_EQ(root["scenario"], "6host_star");
   EXPECT_EQ(root["seeds"], ClockJson::parse(R"({"first": 4, "count": 3})"));

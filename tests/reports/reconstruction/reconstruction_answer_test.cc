@@ -4,6 +4,7 @@
 
 #include "reports/reconstruction/reconstruction_document.h"
 #include "tests/reports/sample_reconstruction.h"
+#include "tests/reports/whole_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -12,7 +13,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string reconstruction_text(const reconstruction::ReconstructionResults& results) {
-  return paragraphs(reconstruction_answer(results)).front();
+  return whole_text(reconstruction_answer(results));
 }
 
 TEST(ReconstructionAnswer, SaysWhichIsBestAndHowFarApartHostsMayBe) {

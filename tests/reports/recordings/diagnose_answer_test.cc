@@ -8,6 +8,7 @@
 
 #include "reports/page/diagnose_page.h"
 #include "reports/recordings/diagnose_figure.h"
+#include "tests/reports/whole_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -32,9 +33,7 @@ evaluation::Diagnosis two_cameras(double ppm) {
   return evaluation::diagnose(all, {});
 }
 
-std::string diagnosis_text(double ppm) {
-  return paragraphs(diagnose_answer(two_cameras(ppm))).front();
-}
+std::string diagnosis_text(double ppm) { return whole_text(diagnose_answer(two_cameras(ppm))); }
 
 TEST(DiagnoseAnswer, SaysThatTheSyncWorksAndWhatStampsCannotShow) {
   const std::string text = diagnosis_text(0);

@@ -21,17 +21,20 @@ TEST(ResultsCsv, OneLinePerPipeline) {
             "frames_dropped,evaluated_pulses,unsynchronised_hosts,published_amd_ms,"
             "published_amd_inside,published_amd_percentile,published_rmdv_ms,"
             "published_rmdv_inside,published_rmdv_attainable,packets_per_s,sets,pure_sets,"
-            "partial_sets,index_errors,discarded_frames,set_amd_ms,set_absolute_error_ms,"
+            "due_pulses,exposed_pulses,partial_sets,index_errors,discarded_frames,set_amd_ms,set_"
+            "absolute_error_ms,"
             "emission_latency_ms,emission_latency_max_ms,exposure_spread_median_ms,"
             "exposure_spread_p95_ms,aligned_1_ms_s,aligned_0_1_ms_s,aligned_0_01_ms_s,"
             "disturbed_frames,exposure_drift_ppm,wrong_locks,colour_offset_ms,"
             "colour_offset_spread_ms,t_l_ms,t_t_ms,t_d_ms,session_passes,get_time_ms,"
-            "set_time_ms,message_time_ms,scored_seeds\n"
+            "set_time_ms,message_time_ms,scored_seeds,standing,failed\n"
             "yoon2021_both,yoon2021_both,regression_30,yoon2021,2,1.5,2.5,0.75,0.5,1,29,28,30,"
             "-29,-28,-30,0.5,0.25,0.75,0.0625,0,0.125,1,0.75,8.5,34560,34557,3,960,1,2.438,1,50,"
-            "1.8044,0,0,30,720,720,4,0,21,1.75,28,0.25,6,,,,,,,,,,,,,,,,,,2\n"
+            "1.8044,0,0,30,720,720,0,0,4,0,21,1.75,28,0.25,6,,,,,,,,,,,,,,,,,,2,failed,"
+            "hosts were not synchronised (1 over all seeds)\n"
             "free_running,free_running,raw_arrival,yoon2021,750250,500,1500000,250,200,300,,,,,,"
-            ",,,,,,,,0,,0,0,0,0,0,,,,,,,,0,0,0,0,0,,,,,,,,,,,,,,,,,,,,,,2\n");
+            ",,,,,,,,0,,0,0,0,0,0,,,,,,,,0,0,0,0,0,0,0,,,,,,,,,,,,,,,,,,,,,,2,failed,"
+            "no pulse was delivered by all cameras\n");
 }
 
 TEST(ResultsCsv, SteeredExposuresHaveTheirColumns) {
@@ -46,7 +49,10 @@ TEST(ResultsCsv, SteeredExposuresHaveTheirColumns) {
   std::getline(lines, line);
   EXPECT_TRUE(line.starts_with("yoon2021_both,yoon2021_both,nudge,regression_30,yoon2021,2,"))
       << line;
-  EXPECT_TRUE(line.ends_with(",6,0.5,2,3,8,,12.5,5,0.5,,,,,,,,,,2")) << line;
+  EXPECT_TRUE(
+      line.ends_with(",6,0.5,2,3,8,,12.5,5,0.5,,,,,,,,,,2,failed,"
+                     "hosts were not synchronised (1 over all seeds)"))
+      << line;
   std::getline(lines, line);
   EXPECT_TRUE(line.starts_with("free_running,free_running,,raw_arrival,yoon2021,")) << line;
 }
@@ -69,7 +75,7 @@ TEST(ResultsCsv, PublishedFiguresHaveAColumn) {
   evaluation::Results results = sample_figure_results();
   results.published_figures[1].verdict = evaluation::FigureVerdict::kFails;
   const std::string text = csv(results);
-  EXPECT_THAT(text, HasSubstr(",scored_seeds,published_figures"));
+  EXPECT_THAT(text, HasSubstr(",scored_seeds,standing,failed,published_figures"));
   EXPECT_THAT(text, HasSubstr("amd_ms at_most 2.44; amd_ms at_least 3 fails"));
 }
 

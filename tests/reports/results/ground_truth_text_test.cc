@@ -103,10 +103,10 @@ TEST(GroundTruthText, IndexErrorsOfUnverifiedSetsAreNotKnown) {
 
 TEST(GroundTruthText, CsvHasThreeMoreColumns) {
   const std::string text = csv(sample_rig_results());
-  EXPECT_THAT(text, HasSubstr(",message_time_ms,scored_seeds,ground_truth,verified,notes\n"));
+  EXPECT_THAT(text, HasSubstr(",scored_seeds,standing,failed,ground_truth,verified,notes\n"));
   EXPECT_THAT(text, HasSubstr(",none,unverified,repetition 2: camera 7 was unplugged\n"));
   EXPECT_THAT(text, HasSubstr("; repetition 2: host2 is \"\"lost\"\", too\"\n"));
-  EXPECT_THAT(text, HasSubstr(",720,,4,,21,"));  // neither pure sets nor index errors
+  EXPECT_THAT(text, HasSubstr(",720,,,,4,,21,"));  // neither pure sets nor index errors
   EXPECT_THAT(csv(sample_genlock_results()), HasSubstr(",genlock_order,verified,\n"));
 }
 

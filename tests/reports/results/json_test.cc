@@ -24,7 +24,7 @@ TEST(ResultsJson, SaysWhatItIs) {
 
 TEST(ResultsJson, ARowHasEverything) {
   const Json row = Json::parse(json(sample_results()))["rows"][0];
-  EXPECT_EQ(row, Json::parse(R"({
+  EXPECT_EQ(row, Json::parse(R"json({
     "pipeline": "yoon2021_both", "host_sync": "yoon2021_both",
     "device_time": "regression_30", "gathering": "yoon2021", "offline": false,
     "amd_ms": {"median": 2.0, "p05": 1.5, "p95": 2.5, "values": [1.5, 2.5]},
@@ -42,7 +42,7 @@ TEST(ResultsJson, ARowHasEverything) {
       "precision": 1.0, "recall": 0.75, "margin_ms": 8.5,
       "seed_precision": {"median": 1.0, "p05": 1.0, "p95": 1.0, "values": [1.0, 1.0]},
       "seed_recall": {"median": 0.75, "p05": 0.5, "p95": 1.0, "values": [0.5, 1.0]},
-      "sets": 720, "pure_sets": 720, "complete_pulses": 960, "partial_sets": 4, "index_errors": 0, "discarded_frames": 21,
+      "sets": 720, "pure_sets": 720, "complete_pulses": 960, "due_pulses": 0, "exposed_pulses": 0, "partial_sets": 4, "index_errors": 0, "discarded_frames": 21,
       "set_amd_ms": {"median": 1.75, "p05": 1.25, "p95": 2.25, "values": [1.25, 2.25]},
       "set_absolute_error_ms": {"median": 28.0, "p05": 27.0, "p95": 29.0, "values": [27.0, 29.0]},
       "emission_latency_ms": {"median": 0.25, "p05": 0.0, "p95": 0.5, "values": [0.0, 0.5]},
@@ -69,11 +69,17 @@ TEST(ResultsJson, ARowHasEverything) {
     "set_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "message_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "scored_seeds": 2, "ground_truth": "simulation", "verified": true, "notes": [],
-    "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
-                  "rmdv_attainable": false,
-                  "amd_percentile": 50.0, "amd_percentile_interval": [32.25, 67.75],
-                  "rmdv_percentile": 100.0, "rmdv_percentile_interval": [95.25, 100.0]}
-  })"));
+    "standing": "failed", "failed": "hosts were not synchronised (1 over all seeds)",
+    "published": {
+    "amd_ms" : 2.438, "rmdv_ms" : 1.8044, "amd_inside" : true,
+                                                         "rmdv_inside" : false,
+                                                                         "rmdv_attainable"
+        : false,
+          "amd_percentile" : 50.0,
+          "amd_percentile_interval" : [ 32.25, 67.75 ],
+                                      "rmdv_percentile" : 100.0,
+                                      "rmdv_percentile_interval" : [ 95.25, 100.0 ]}
+})json"));
 }
 
 TEST(ResultsJson, SteeredExposuresSayWhatSteersThem) {

@@ -3,19 +3,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/results/answer_fields.h"
 #include "reports/results/summary_document.h"
 #include "tests/reports/sample_results.h"
+#include "tests/reports/whole_text.h"
 
 namespace simbench::reports {
 namespace {
 
-using evaluation::RankedBy;
 using testing::HasSubstr;
 using testing::Not;
 
 std::string answer_text(const evaluation::Results& results,
                         const evaluation::Budget* budget = nullptr) {
-  return paragraphs(results_answer(results, RankedBy::kAmd, budget)).front();
+  return whole_text(results_answer(results, budget));
 }
 
 evaluation::BudgetPart equal_part(double mean) {
@@ -36,35 +41,116 @@ evaluation::Budget budget_of(double host_clock_ms, double delivery_ms) {
   return budget;
 }
 
+// The sample, whose first row did its work and whose second gathered nothing.
+evaluation::Results working_sample() {
+  evaluation::Results results = sample_results();
+  results.rows[0].unsynchronised_hosts = 0;
+  return results;
+}
+
+// The values times these factors, so many seeds of each, and all pulses found whole.
+evaluation::Results pipelines_of(const std::vector<std::pair<const char*, double>>& factors,
+                                 int seeds) {
+  evaluation::Results results = working_sample();
+  const evaluation::Row both = results.rows.front();
+  results.rows.clear();
+  for (const auto& [pipeline, factor] : factors) {
+    evaluation::Row& row = results.rows.emplace_back(both);
+    row.pipeline = pipeline;
+    row.published.reset();
+    row.sets = {.emitted = 960,
+                .pure = 960,
+                .complete_pulses = 960,
+                .due_pulses = 960,
+                .exposed_pulses = 960};
+    row.precision = row.recall = 1;
+    std::vector<double> amd_ms;
+    for (int seed = 0; seed < seeds; ++seed) amd_ms.push_back(factor * (1 + 0.01 * (seed % 7)));
+    row.amd_ms = evaluation::make_series(amd_ms);
+  }
+  return results;
+}
+
 TEST(ResultsAnswer, NamesTheBestWithItsBand) {
-  const std::string text = answer_text(sample_results());
-  EXPECT_THAT(text, HasSubstr("yoon2021_both is the best of the 2 pipelines that a rig can run: "
-                              "AMD 2.00 ms (5-95 %: [1.50, 2.50] ms)."));
+  const std::string text = answer_text(pipelines_of({{"a", 2}, {"b", 3}}, 20));
+  EXPECT_THAT(text, HasSubstr("a is the best of the 2 pipelines that a rig can run: AMD 2.06 ms "
+                              "(5-95 %: [2.00, 2.12] ms). The next, b, has 1.50 [1.50, 1.50] "
+                              "times as much."));
+}
+
+TEST(ResultsAnswer, SaysInTheLeadThatOthersCannotBeToldFromIt) {
+  EXPECT_THAT(answer_text(pipelines_of({{"a", 2}, {"b", 2}, {"c", 3}}, 20)),
+              HasSubstr("a, with 1 that these seeds cannot tell from it, is the best of the 3 "
+                        "pipelines that a rig can run: AMD 2.06 ms (5-95 %: [2.00, 2.12] ms). Not "
+                        "told apart: b. The next, c,"));
+}
+
+TEST(ResultsAnswer, OfTooFewSeedsItSaysHowManyWouldDo) {
+  EXPECT_THAT(answer_text(pipelines_of({{"a", 2}, {"b", 2000}, {"c", 3000}}, 4)),
+              HasSubstr("a has the smallest AMD of the 3 pipelines that a rig can run, in too few "
+                        "seeds for a verdict: 2.03 ms (5-95 %: [2.00, 2.06] ms). 4 seeds are too "
+                        "few for a verdict (7 would do); in all 4 it has less than b and c."));
+  EXPECT_THAT(answer_text(pipelines_of({{"a", 2}, {"b", 3}}, 1)),
+              HasSubstr("1 seed is too few for a verdict (6 would do); in this one it has less "
+                        "than b."));
+}
+
+TEST(ResultsAnswer, WhatFailedIsNamedAndNotRanked) {
+  EXPECT_THAT(answer_text(working_sample()),
+              HasSubstr("yoon2021_both is the only pipeline that a rig can run and that did not "
+                        "fail: AMD 2.00 ms (5-95 %: [1.50, 2.50] ms). free_running failed: no "
+                        "pulse was delivered by all cameras."));
+  evaluation::Results results = pipelines_of({{"a", 2}, {"b", 3}}, 20);
+  for (evaluation::Row& row : results.rows) row.sets.pure = 0;
+  EXPECT_THAT(answer_text(results), HasSubstr("Every pipeline that a rig can run failed. a and b "
+                                              "failed: no gathered set is of one pulse."));
 }
 
 TEST(ResultsAnswer, DoubtsSetsThatLackPulses) {
-  EXPECT_THAT(answer_text(sample_results()),
-              HasSubstr("Do not trust its sets: 0 % of them mix pulses, 25.0 % of the pulses are "
-                        "not whole."));
+  EXPECT_THAT(
+      answer_text(working_sample()),
+      HasSubstr("Do not trust its sets: 0 of 720 mix pulses; of 960 pulses that all cameras "
+                "delivered 720 are found whole."))
+      << "an older archive does not know how many were due";
 }
 
 TEST(ResultsAnswer, TrustsSetsWithoutAFault) {
-  evaluation::Results results = sample_results();
-  results.rows.front().recall = 1;
-  EXPECT_THAT(answer_text(results), HasSubstr("none of 720 mixes pulses, no pulse is missing, with "
-                                              "8.50 ms to spare."));
+  EXPECT_THAT(answer_text(pipelines_of({{"a", 2}}, 20)),
+              HasSubstr("Its sets can be trusted here: none of 960 mixes pulses, no pulse is "
+                        "missing, with 8.50 ms to spare."));
+}
+
+// Half of the pulses were not exposed: all that came was found, and half is missing.
+TEST(ResultsAnswer, PulsesThatWereDueAndNeverCameAreInTheLead) {
+  evaluation::Results results = pipelines_of({{"a", 2}}, 20);
+  results.rows[0].sets = {.emitted = 470,
+                          .pure = 470,
+                          .complete_pulses = 470,
+                          .due_pulses = 960,
+                          .exposed_pulses = 480};
+  results.loss_reasons = {"/cameras/exposure_ms: too long"};
+  const AnswerText answer = results_answer(results, nullptr);
+  EXPECT_THAT(answer.lead,
+              HasSubstr("But 51.0 % of the 960 pulses due are lost: 480 not exposed by "
+                        "all cameras, 10 exposed and not delivered by all. "
+                        "/cameras/exposure_ms: too long."));
+  const std::string text = whole_text(answer);
+  EXPECT_THAT(text, HasSubstr("none of 470 mixes pulses, with 8.50 ms to spare; of 960 pulses due "
+                              "480 were exposed by all cameras, 470 delivered by all and 470 found "
+                              "whole."));
+  EXPECT_THAT(text, Not(HasSubstr("no pulse is missing")));
 }
 
 TEST(ResultsAnswer, SaysWhatLimitsItAndWhatWouldBeWon) {
   const evaluation::Budget budget = budget_of(3, 1);
-  EXPECT_THAT(answer_text(sample_results(), &budget),
+  EXPECT_THAT(answer_text(working_sample(), &budget),
               HasSubstr("What limits it (error budget over 2 seeds): host clock 75 %, USB delivery "
                         "25 %. Most would be won by perfect host clocks: 38 % of it."));
-  EXPECT_THAT(answer_text(sample_results()), Not(HasSubstr("What limits it")));
+  EXPECT_THAT(answer_text(working_sample()), Not(HasSubstr("What limits it")));
 }
 
 TEST(ResultsAnswer, SaysThatAmdHidesWhatAllCamerasShare) {
-  EXPECT_THAT(answer_text(sample_results()),
+  EXPECT_THAT(answer_text(working_sample()),
               HasSubstr("AMD hides that all cameras are 29.0 ms off together"));
 }
 
@@ -72,10 +158,27 @@ TEST(ResultsAnswer, SaysSoWhereThereIsNoAnswer) {
   EXPECT_EQ(answer_text({}), "No pipeline that a rig can run has a result here.");
 }
 
+TEST(ResultsAnswer, ForProgramsHasWhatIsBehindIt) {
+  const Json json = answer_with_fields(working_sample(), results_answer(working_sample(), nullptr));
+  EXPECT_EQ(json["ranked_by"], "amd_ms");
+  EXPECT_EQ(json["best"], "yoon2021_both");
+  EXPECT_EQ(json["failed"][0]["pipeline"], "free_running");
+  EXPECT_TRUE(json["pulses"].is_null()) << "how many were due is not known";
+  const evaluation::Results three = pipelines_of({{"a", 2}, {"b", 2}, {"c", 3}}, 20);
+  const Json fields = answer_with_fields(three, results_answer(three, nullptr));
+  EXPECT_EQ(fields["not_told_apart"], Json::array({"b"}));
+  EXPECT_EQ(fields["next"]["pipeline"], "c");
+  EXPECT_EQ(fields["too_few_seeds"], false);
+  EXPECT_EQ(fields["pulses"]["due"], 960);
+  EXPECT_EQ(fields["pulses"]["mixed_sets"], 0);
+  const evaluation::Results few = pipelines_of({{"a", 2}, {"b", 3}}, 2);
+  EXPECT_EQ(answer_with_fields(few, results_answer(few, nullptr))["seeds_needed"], 6);
+}
+
 TEST(Summary, HasTheAnswerATableAndWhatFailed) {
-  const AnswerText answer = results_answer(sample_results(), RankedBy::kAmd, nullptr);
+  const AnswerText answer = results_answer(working_sample(), nullptr);
   const std::string text = plain(summary_document(sample_results(), {.summary = "A fit."}, answer));
-  EXPECT_THAT(text, HasSubstr("sample: 2 seeds (1-2)\nyoon2021_both is the best"));
+  EXPECT_THAT(text, HasSubstr("sample: 2 seeds (1-2)\nyoon2021_both is the only"));
   EXPECT_THAT(text, HasSubstr("2.00 ms"));
   EXPECT_THAT(text, HasSubstr("host synchronisation failed once"));
   EXPECT_THAT(text, Not(HasSubstr("RMDV")));

@@ -7,6 +7,7 @@
 #include "reports/page/sweep_page.h"
 #include "reports/sweep/sweep_report.h"
 #include "scenarios/loader.h"
+#include "tests/reports/whole_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -44,7 +45,7 @@ std::vector<evaluation::ResponseRow> star_rows(const SweepPlan& plan) {
 }
 
 std::string sweep_text(const SweepPlan& plan) {
-  return paragraphs(sweep_answer(plan, star_rows(plan))).front();
+  return whole_text(sweep_answer(plan, star_rows(plan)));
 }
 
 TEST(SweepAnswer, LeavesOutWhatNoRigCanRun) {

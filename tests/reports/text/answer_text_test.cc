@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "reports/text/answer_json.h"
+
 namespace simbench::reports {
 namespace {
 
@@ -14,7 +16,7 @@ AnswerText short_answer() {
   AnswerText answer{.lead = "a < b is best."};
   answer.add("Others", "The next has twice as much.");
   answer.add("Limit", "");
-  answer.add("Certainty", "Uncertain: 1 seed.");
+  answer.add("Uncertain", "1 seed.");
   return answer;
 }
 
@@ -24,9 +26,18 @@ TEST(AnswerText, FewSeedsAgreeWithTheirVerb) {
   EXPECT_EQ(few_seeds_text(1, " of a point"), "1 seed of a point says little about other worlds");
 }
 
-TEST(AnswerText, IsOneParagraphWithoutLabels) {
-  EXPECT_THAT(paragraphs(short_answer()),
-              ElementsAre("a < b is best. The next has twice as much. Uncertain: 1 seed."));
+TEST(AnswerText, IsALeadAndLabelledLines) {
+  EXPECT_THAT(
+      paragraphs(short_answer()),
+      ElementsAre("a < b is best.", "Others: The next has twice as much.", "Uncertain: 1 seed."));
+}
+
+TEST(AnswerText, ForProgramsHasTheSameParts) {
+  const Json json = answer_json(short_answer());
+  EXPECT_EQ(json["lead"], "a < b is best.");
+  ASSERT_EQ(json["lines"].size(), 2U);
+  EXPECT_EQ(json["lines"][1], (Json{{"label", "Uncertain"}, {"text", "1 seed."}}));
+  EXPECT_TRUE(answer_json({}).is_null());
 }
 
 TEST(AnswerText, IsALeadAndLabelledLinesOnAPage) {

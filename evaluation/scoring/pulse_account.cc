@@ -1,0 +1,81 @@
+#include "evaluation/scoring/pulse_account.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr std::uint32_t kNoFrame = 0;
+constexpr std::int64_t kMostLostAtTheEnd = 2;
+
+}  // namespace
+
+PulseAccount::PulseAccount(std::int64_t first_pulse, std::int64_t pulses, std::size_t cameras)
+    : first_pulse_(first_pulse),
+      pulses_(static_cast<std::size_t>(pulses)),
+      ends_(cameras),
+      frames_(pulses_ * cameras, kNoFrame) {}
+
+void PulseAccount::add(std::uint32_t camera, std::int64_t pulse, std::uint32_t counter) {
+  if (pulse < 0) return;
+  Ends& ends = ends_[camera];
+  if (pulse < first_pulse_) {
+    if (!ends.before || ends.before->pulse < pulse) ends.before = {pulse, counter};
+    return;
+  }
+  const auto row = static_cast<std::uint64_t>(pulse - first_pulse_);
+  if (row >= pulses_) {
+    if (!ends.after || ends.after->pulse > pulse) ends.after = {pulse, counter};
+    return;
+  }
+  // The largest counter shares its place with none, once in four billion frames.
+  frames_[camera * pulses_ + row] = counter + 1;
+}
+
+void PulseAccount::take_out(const Frame& last, const Frame& next,
+                            std::vector<bool>& exposed) const {
+  const std::int64_t missing = next.pulse - last.pulse - 1;
+  if (missing <= 0) return;
+  const std::int64_t lost = std::uint32_t{next.counter - last.counter} - std::int64_t{1};
+  const std::int64_t shot = lost < 0 || lost > missing ? 0 : lost;
+  std::int64_t next_shot = 1;
+  for (std::int64_t i = 1; i <= missing; ++i) {
+    if (next_shot <= shot && i == (next_shot * (missing + 1) + shot / 2) / (shot + 1)) {
+      ++next_shot;
+      continue;
+    }
+    const std::int64_t row = last.pulse + i - first_pulse_;
+    if (row >= 0 && row < static_cast<std::int64_t>(pulses_)) {
+      exposed[static_cast<std::size_t>(row)] = false;
+    }
+  }
+}
+
+void PulseAccount::add_to(SetCounts& counts) const {
+  std::vector<bool> exposed(pulses_, true);
+  const auto end = first_pulse_ + static_cast<std::int64_t>(pulses_);
+  for (std::size_t camera = 0; camera < ends_.size(); ++camera) {
+    const Ends& ends = ends_[camera];
+    // Before its first frame it exposed nothing, as behind its last.
+    std::optional<Frame> last = ends.before;
+    const auto go_on = [&](const Frame& frame) {
+      take_out(last.value_or(Frame{first_pulse_ - 1, frame.counter - 1}), frame, exposed);
+      last = frame;
+    };
+    for (std::size_t row = 0; row < pulses_; ++row) {
+      const std::uint32_t stored = frames_[camera * pulses_ + row];
+      if (stored == kNoFrame) continue;
+      go_on({first_pulse_ + static_cast<std::int64_t>(row), stored - 1});
+    }
+    if (ends.after) {
+      go_on(*ends.after);
+    } else if (!last || end - last->pulse - 1 > kMostLostAtTheEnd) {
+      go_on({end, last ? last->counter + 1 : 0});
+    }
+  }
+  counts.due_pulses = static_cast<std::int64_t>(pulses_);
+  counts.exposed_pulses = std::ranges::count(exposed, true);
+}
+
+}  // namespace simbench::evaluation

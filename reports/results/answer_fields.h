@@ -1,0 +1,27 @@
+// The answer of a run or of the hosts' clocks alone for programs: its sentences and what is behind
+// them (evaluation/answer/answer.h).
+//
+//   "answer": {"lead", "lines": [{"label", "text"}],        reports/text/answer_json.h
+//     "ranked_by": the id of the metric, "ranked": how many pipelines are,
+//     "best": null or its name,
+//     "not_told_apart": [names], "too_few_seeds": for any verdict; then
+//     "seeds_needed": as many would do, else null,
+//     "next": null or {"pipeline", "times", "times_interval": null or [low, high]},
+//     "failed": [{"pipeline", "reason"}],
+//     "limit": null or {"pipeline", "times": best / limit},
+//     "known_within": null or the median's 95 % interval as a share of it,
+//     "pulses": of the best; null, or where the pulses are known {"due", "exposed", "delivered",
+//       "whole", "sets", "mixed_sets"}}                     evaluation/scoring/pulse_account.h
+//
+//   root["answer"] = answer_with_fields(results, results_answer(results, nullptr));
+#pragma once
+
+#include "evaluation/scoring/results.h"
+#include "reports/text/answer_text.h"
+#include "reports/text/json_node.h"
+
+namespace simbench::reports {
+
+Json answer_with_fields(const evaluation::Results& results, const AnswerText& text);
+
+}  // namespace simbench::reports
