@@ -13,7 +13,7 @@ class AdvisePerDay : public ProgramTest {};
 TEST_F(AdvisePerDay, SaysHowOftenItGoesWrong) {
   const ProgramResult result =
       run({"advise", "--require", "amd<0.1ms", "--cameras", "4", "--rate", "30", "--hosts", "2",
-           "--seeds", "4", "--set", "/timeline/frames=60", "--per-day", "--bound-ms", "0.02",
+           "--seeds", "72", "--set", "/timeline/frames=60", "--per-day", "--bound-ms", "0.02",
            "--format", "json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto rare = nlohmann::json::parse(result.out)["rare"];
