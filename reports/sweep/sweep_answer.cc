@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/ports/stage.h"
 #include "evaluation/sweep/ranking.h"
 #include "evaluation/sweep/sweep_standing.h"
 #include "reports/sweep/sweep_parts.h"
