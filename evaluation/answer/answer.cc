@@ -28,6 +28,7 @@ void compare_with_best(const std::vector<const Row*>& rows, Answer& answer) {
   std::erase(others, answer.best);
   if (others.empty()) return;
   std::vector<ComparisonTask> tasks;
+  tasks.reserve(others.size());
   const Series& best = ranked_series(*answer.best, answer.ranked_by);
   for (const Row* row : others) {
     tasks.push_back({pair_up(best.values, ranked_series(*row, answer.ranked_by).values), {}});

@@ -11,8 +11,8 @@ namespace simbench::evaluation {
 namespace {
 
 struct RankingEntry {
-  RankedBy ranked_by;
-  const char* metric;
+  RankedBy ranked_by = RankedBy::kAmd;
+  const char* metric = "";
   ResultKind kind = ResultKind::kCaptures;
 };
 
