@@ -69,7 +69,7 @@ void rank_by(const std::string& metric, Results& results) {
 
 reports::AnswerText run_answer(const Results& results, const Scenario& scenario,
                                const evaluation::Progress& progress) {
-  const Row* const best = evaluation::answer_of(results).best;
+  const Row* const best = evaluation::best_of(results);
   std::optional<Budget> budget;
   if (best != nullptr) budget = affordable_budget(results, scenario, *best, progress);
   return reports::results_answer(results, budget ? &*budget : nullptr);

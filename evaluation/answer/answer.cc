@@ -13,7 +13,8 @@ namespace {
 // Whether its hosts read the master's clock and all else is as in the best.
 bool differs_in_host_sync_alone(const Row& row, const Row& best) {
   return standing_of_stages(row, RankedBy::kClockSpread) == RowStanding::kLimit &&
-         row.device_time == best.device_time && row.gathering == best.gathering;
+         row.capture_alignment == best.capture_alignment && row.device_time == best.device_time &&
+         row.gathering == best.gathering;
 }
 
 PairedComparison compared(const Row& row, const Row& best, RankedBy ranked_by) {
@@ -99,12 +100,14 @@ const Row* best_of(const std::vector<const Row*>& rows, RankedBy ranked_by) {
   return first_of(ranked_rows(rows, RowStanding::kRanked, ranked_by), ranked_by);
 }
 
+const Row* best_of(const Results& results) {
+  return best_of(pointers_to(results.rows), ranking_of(results));
+}
+
 Answer answer_of(const Results& results) {
   Answer answer{.ranked_by = ranking_of(results)};
-  std::vector<const Row*> all;
-  all.reserve(results.rows.size());
+  const std::vector<const Row*> all = pointers_to(results.rows);
   for (const Row& row : results.rows) {
-    all.push_back(&row);
     ReasonedStanding standing = standing_of(row, answer.ranked_by);
     if (standing.is != RowStanding::kFailed) continue;
     answer.failed.push_back({.row = &row, .reason = std::move(standing.reason)});

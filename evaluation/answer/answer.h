@@ -65,7 +65,8 @@ struct Answer {
 // `results` must outlive the answer.
 Answer answer_of(const Results& results);
 
-// The best of these; null: none is ranked.
+// The best of these; null: none is ranked. Compares nothing: much cheaper than answer_of().
 const Row* best_of(const std::vector<const Row*>& rows, RankedBy ranked_by);
+const Row* best_of(const Results& results);
 
 }  // namespace simbench::evaluation

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "algorithms/device_time/variants.h"
 #include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
-#include "evaluation/scoring/rows.h"
-#include "recording/counted.h"
 
 namespace simbench::evaluation {
 namespace {

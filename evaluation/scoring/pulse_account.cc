@@ -1,7 +1,6 @@
 #include "evaluation/scoring/pulse_account.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace simbench::evaluation {
 namespace {

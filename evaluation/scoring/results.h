@@ -82,6 +82,13 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::vector<SeedScore> seeds;
 };
 
+inline std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
+  std::vector<const Row*> pointers;
+  pointers.reserve(rows.size());
+  for (const Row& row : rows) pointers.push_back(&row);
+  return pointers;
+}
+
 struct Claim {
   std::string id;                        // "C1" ... "C12", docs/reference/paper.md section 11
   std::string text;                      // with its threshold

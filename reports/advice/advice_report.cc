@@ -224,7 +224,9 @@ AnswerText advice_answer(const Advice& advice) {
              fmt::format("It is the cheapest that does with 95 %: price class {}, without cameras "
                          "and trigger.",
                          price_class(option.option.price)));
-  answer.add("Margin", fmt::format("Margin {}.", margin_text(best.margin)));
+  answer.add("Margin", fmt::format("{}: the limit over the 95 % quantile, the smallest of all "
+                                   "requirements.",
+                                   margin_text(best.margin)));
   if (advice.fails_first) {
     answer.add("Fails first",
                fmt::format("What fails first is the stage {}, which makes {} of the {}.",

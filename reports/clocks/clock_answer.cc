@@ -20,12 +20,13 @@ constexpr double kMostlyConstant = 0.5;  // of the largest time error
 
 std::string closest_sentence(const Answer& answer) {
   const Row& best = *answer.best;
-  return fmt::format("{} {}: {} apart, mean in time (5-95 %: {}).", best.pipeline,
-                     answer.ranked == 1
-                         ? "is the only host_sync here that a rig can run, and keeps the clocks"
-                         : fmt::format("keeps the clocks closest together of the {} that a rig can "
-                                       "run",
-                                       answer.ranked),
+  const std::string place =
+      answer.ranked == 1
+          ? " is the only host_sync here that a rig can run, and keeps the clocks"
+          : fmt::format("{} keeps the clocks closest together of the {} that a rig can run{}",
+                        certainty_clause(answer), answer.ranked,
+                        answer.seeds_needed > 0 ? ", in too few seeds for a verdict" : "");
+  return fmt::format("{}{}: {} apart, mean in time (5-95 %: {}).", best.pipeline, place,
                      time_text(best.clock_spread_ms.median),
                      time_band_text(best.clock_spread_ms.p05, best.clock_spread_ms.p95));
 }
@@ -41,11 +42,11 @@ std::string in_sync_sentence(const Row& row) {
     const double median_s = evaluation::median_time(seconds.values);
     if (std::isnan(median_s)) continue;
     return fmt::format(
-        "In sync: within {} for good {} after the cold start; the largest error of a host is {}.",
-        bound, time_text(1000 * median_s), time_text(row.max_te_ms.median));
+        "Within {} for good {} after the cold start; the largest error of a host is {}.", bound,
+        time_text(1000 * median_s), time_text(row.max_te_ms.median));
   }
   return fmt::format(
-      "Not in sync: half of the seeds or more never stay within 1 ms; the largest "
+      "No: half of the seeds or more never stay within 1 ms; the largest "
       "error of a host is {}.",
       time_text(row.max_te_ms.median));
 }
@@ -77,7 +78,10 @@ std::string without_master_sentence(const Row& row) {
 }  // namespace
 
 AnswerText clock_answer(const evaluation::Results& results) {
-  const Answer answer = evaluation::answer_of(results);
+  return clock_answer(results, evaluation::answer_of(results));
+}
+
+AnswerText clock_answer(const evaluation::Results& results, const Answer& answer) {
   if (answer.best == nullptr) {
     AnswerText none{.lead = "No host_sync that a rig can run has a result here."};
     none.add("Failed", failed_text(answer));

@@ -190,7 +190,8 @@ std::string clock_json(const ClockResults& results) {
   for (std::size_t row = 0; row < of.rows.size(); ++row) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
   }
-  root["answer"] = answer_with_fields(of, clock_answer(of));
+  const evaluation::Answer answer = evaluation::answer_of(of);
+  root["answer"] = answer_with_fields(answer, clock_answer(of, answer));
   root["performance"] = performance_json(of.performance);
   return file_text(root);
 }

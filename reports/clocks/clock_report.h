@@ -27,6 +27,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/answer/answer.h"
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
@@ -45,6 +46,7 @@ evaluation::ClockResults clock_results_of(const Archive& archive);
 // packets, and what is uncertain. Ranked by the mean spread in time (evaluation/answer/answer.h).
 // `results`: of ResultKind::kClockRuns.
 AnswerText clock_answer(const evaluation::Results& results);
+AnswerText clock_answer(const evaluation::Results& results, const evaluation::Answer& answer);
 
 // Its head begins with the answer.
 Document clock_document(const evaluation::ClockResults& results, const std::string& summary);

@@ -127,7 +127,7 @@ HtmlArticle article_of(const ReportedArchive& reported, std::size_t number,
                        const ReportInput& input) {
   const Archive& archive = reported.archive;
   const bool is_of_clocks = archive.results.kind == evaluation::ResultKind::kClockRuns;
-  const Row* const best = evaluation::answer_of(archive.results).best;
+  const Row* const best = evaluation::best_of(archive.results);
   return {.number = number,
           .name = archive.path,
           .heading = scenarios::named(archive.results.scenario, archive.results.derivation),

@@ -272,8 +272,7 @@ AnswerText paper_answer(const PaperResults& results) {
                                                   : fmt::format("; these seeds cannot place {}",
                                                                 all - inside - outside))};
   for (const PaperRun* run : {&results.at_15_fps, &results.at_45_fps}) {
-    answer.add(rate_text(*run),
-               fmt::format("At {}: {}", rate_text(*run), published_amd_text(run->results)));
+    answer.add(rate_text(*run), published_amd_text(run->results));
   }
   std::vector<std::string> by_chance;
   for (const PaperClaim& claim : paper_claims(results)) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "evaluation/answer/answer.h"
 #include "reports/text/answer_json.h"
 
 namespace simbench::reports {
@@ -34,8 +33,7 @@ Json pulses_json(const Row* best) {
 
 }  // namespace
 
-Json answer_with_fields(const evaluation::Results& results, const AnswerText& text) {
-  const Answer answer = evaluation::answer_of(results);
+Json answer_with_fields(const Answer& answer, const AnswerText& text) {
   Json all = answer_json(text);
   all["ranked_by"] = evaluation::ranked_metric(answer.ranked_by).id;
   all["ranked"] = answer.ranked;

@@ -13,15 +13,16 @@
 //     "pulses": of the best; null, or where the pulses are known {"due", "exposed", "delivered",
 //       "whole", "sets", "mixed_sets"}}                     evaluation/scoring/pulse_account.h
 //
-//   root["answer"] = answer_with_fields(results, results_answer(results, nullptr));
+//   const evaluation::Answer answer = evaluation::answer_of(all_results);
+//   const Json fields = answer_with_fields(answer, results_answer(all_results, answer, nullptr));
 #pragma once
 
-#include "evaluation/scoring/results.h"
+#include "evaluation/answer/answer.h"
 #include "reports/text/answer_text.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
 
-Json answer_with_fields(const evaluation::Results& results, const AnswerText& text);
+Json answer_with_fields(const evaluation::Answer& answer, const AnswerText& text);
 
 }  // namespace simbench::reports

@@ -171,7 +171,8 @@ std::string json(const evaluation::Results& results) {
     root["rows"].push_back(row_json(row, ranked_by));
   }
   state_published_figures(results, root);
-  root["answer"] = answer_with_fields(results, results_answer(results, nullptr));
+  const evaluation::Answer answer = evaluation::answer_of(results);
+  root["answer"] = answer_with_fields(answer, results_answer(results, answer, nullptr));
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
   root["performance"] = performance_json(results.performance);
   return file_text(root);

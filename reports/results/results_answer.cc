@@ -58,13 +58,6 @@ const char* ranked_title(const Answer& answer) {
   return evaluation::ranked_metric(answer.ranked_by).title;
 }
 
-// ", with 3 that these seeds cannot tell from it,".
-std::string equals_clause(const Answer& answer) {
-  if (answer.not_told_apart.empty()) return "";
-  return fmt::format(", with {} that these seeds cannot tell from it,",
-                     answer.not_told_apart.size());
-}
-
 std::string best_sentence(const Answer& answer) {
   const Series& series = evaluation::ranked_series(*answer.best, answer.ranked_by);
   if (answer.seeds_needed > 0) {
@@ -76,7 +69,7 @@ std::string best_sentence(const Answer& answer) {
   }
   const std::string place =
       answer.ranked > 1       ? fmt::format("{} is the best of the {} pipelines that a rig can run",
-                                            equals_clause(answer), answer.ranked)
+                                            certainty_clause(answer), answer.ranked)
       : answer.failed.empty() ? " is the only pipeline here that a rig can run"
                               : " is the only pipeline that a rig can run and that did not fail";
   return fmt::format("{}{}: {} {} (5-95 %: {}).", answer.best->pipeline, place,
@@ -128,8 +121,9 @@ std::string limit_sentence(const Answer& answer) {
         time_text(median), ranked_title(answer));
   }
   if (limit.verdict == evaluation::Verdict::kNoDifferenceSeen || answer.times_limit < 1) {
-    return fmt::format("Perfect host clocks would give it no less in these seeds: {}.",
-                       time_text(median));
+    return fmt::format(
+        "Perfect host clocks would give it {}, which these seeds cannot tell from what it has.",
+        time_text(median));
   }
   return fmt::format("Perfect host clocks would give it {}; it has {} times that limit.",
                      time_text(median), number_text(answer.times_limit));
@@ -234,6 +228,12 @@ std::string sets_sentence(const Row& row) {
 
 }  // namespace
 
+std::string certainty_clause(const Answer& answer) {
+  if (answer.not_told_apart.empty() || answer.seeds_needed > 0) return "";
+  return fmt::format(", with {} that these seeds cannot tell from it,",
+                     answer.not_told_apart.size());
+}
+
 std::string failed_text(const Answer& answer) {
   std::vector<std::string> reasons;  // in order of their first rows
   for (const evaluation::FailedRow& failed : answer.failed) {
@@ -322,7 +322,10 @@ std::string uncertainty_text(const Answer& answer) {
 }
 
 AnswerText results_answer(const Results& results, const Budget* budget) {
-  const Answer answer = evaluation::answer_of(results);
+  return results_answer(results, evaluation::answer_of(results), budget);
+}
+
+AnswerText results_answer(const Results& results, const Answer& answer, const Budget* budget) {
   if (answer.best == nullptr) {
     AnswerText text{.lead = answer.failed.empty()
                                 ? "No pipeline that a rig can run has a result here."

@@ -17,9 +17,15 @@ namespace simbench::reports {
 
 // `budget`: of the best pipeline; null: unknown, and nothing is said about it.
 AnswerText results_answer(const evaluation::Results& results, const evaluation::Budget* budget);
+// The same of an answer that is there already; comparing many rows takes seconds.
+AnswerText results_answer(const evaluation::Results& results, const evaluation::Answer& answer,
+                          const evaluation::Budget* budget);
 
 // Its sentences that other answers have too; `answer` has a best pipeline.
 //
+// Who else may be the best, behind its name in the lead: ", with 3 that these seeds cannot tell
+// from it,"; "" if there is nobody, or too few seeds for any verdict.
+std::string certainty_clause(const evaluation::Answer& answer);
 // Which pipelines cannot be told from the best, the next one, and the paper's; "" if there are
 // none.
 std::string distance_text(const evaluation::Results& results, const evaluation::Answer& answer);

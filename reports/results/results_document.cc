@@ -307,13 +307,6 @@ std::vector<std::string> alignment_legend() {
   return lines;
 }
 
-std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
-  std::vector<const Row*> pointers;
-  pointers.reserve(rows.size());
-  for (const Row& row : rows) pointers.push_back(&row);
-  return pointers;
-}
-
 Table sets_table(const std::vector<const Row*>& rows) {
   RowFields fields = {pipeline_field<Row>(), {{"gathering", Align::kLeft}, &Row::gathering}};
   append(fields, scored_seeds_field(rows, table_metrics(&TablePlaces::sets)));

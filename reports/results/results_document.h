@@ -48,9 +48,6 @@ std::optional<Block> alignment_block(const evaluation::Results& results);
 // The meaning of its columns.
 std::vector<std::string> alignment_legend();
 
-// Addresses of the rows, in their order.
-std::vector<const evaluation::Row*> pointers_to(const std::vector<evaluation::Row>& rows);
-
 // The gathered sets: a line per pipeline, to compare policies.
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
 // The meaning of its columns.

@@ -20,7 +20,7 @@ TEST(ClockAnswer, SaysWhoIsBestAndWhenItIsInSync) {
   const std::string text = clock_answer_of(sample_clock_results().results);
   EXPECT_THAT(text, StartsWith("good is the only host_sync here that a rig can run, and keeps the "
                                "clocks: 1.00 ms apart, mean in time"));
-  EXPECT_THAT(text, HasSubstr("within 1 ms for good 20.0 s after the cold start"));
+  EXPECT_THAT(text, HasSubstr("Within 1 ms for good 20.0 s after the cold start"));
   EXPECT_THAT(text, HasSubstr("What limits it: a constant error of 1.00 ms"));
   EXPECT_THAT(text, HasSubstr("Without its master a host is 1.00 ms off after 60 s"));
   EXPECT_THAT(text, HasSubstr("3 seeds say little about other worlds"));
@@ -30,7 +30,7 @@ TEST(ClockAnswer, SaysWhoIsBestAndWhenItIsInSync) {
 TEST(ClockAnswer, SaysThatClocksDoNotComeTogether) {
   evaluation::Results results = sample_clock_results().results;
   results.rows[0].below_1_ms_s = results.rows[0].below_0_01_ms_s;
-  EXPECT_THAT(clock_answer_of(results), HasSubstr("Not in sync: half of the seeds or more"));
+  EXPECT_THAT(clock_answer_of(results), HasSubstr("No: half of the seeds or more"));
 }
 
 TEST(ClockAnswer, AnOracleIsNoAnswer) {

@@ -148,7 +148,7 @@ TEST(PaperDocument, BeginsWithHowManyValuesArePlausible) {
   const std::string text = markdown(paper_document(sample_paper()));
   EXPECT_THAT(text, HasSubstr("Of the paper's 8 AMD values 7 are plausible draws of the fitted "
                               "worlds, one is not."));
-  EXPECT_THAT(text, HasSubstr("At 15 fps: Published AMD, by its percentile [95 % interval]: 3 of 4 "
+  EXPECT_THAT(text, HasSubstr("15 fps: Published AMD, by its percentile [95 % interval]: 3 of 4 "
                               "inside"));
   EXPECT_THAT(text, HasSubstr("Table 2: 15 fps, 18cam_6host_15fps"));
   EXPECT_THAT(text, HasSubstr("A fit, not a validation"));

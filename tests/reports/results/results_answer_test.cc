@@ -23,6 +23,11 @@ std::string answer_text(const evaluation::Results& results,
   return whole_text(results_answer(results, budget));
 }
 
+Json fields_of(const evaluation::Results& results) {
+  const evaluation::Answer answer = evaluation::answer_of(results);
+  return answer_with_fields(answer, results_answer(results, answer, nullptr));
+}
+
 evaluation::BudgetPart equal_part(double mean) {
   return {.values = {mean, mean}, .mean = mean, .p05 = mean, .p95 = mean};
 }
@@ -95,6 +100,29 @@ TEST(ResultsAnswer, OfTooFewSeedsItSaysHowManyWouldDo) {
                         "than b."));
 }
 
+// The limit's median may be a little larger or smaller than the best one's: neither is a finding.
+TEST(ResultsAnswer, ALimitThatSeedsCannotTellFromTheRowIsNoFactor) {
+  for (const double limit_ms : {1.999, 2.0, 2.001}) {
+    evaluation::Results results = pipelines_of({{"a", 2}, {"clocks", limit_ms}}, 20);
+    results.rows[1].host_sync = "oracle";
+    std::vector<double> amd_ms;
+    for (int seed = 0; seed < 20; ++seed) {
+      amd_ms.push_back(limit_ms * (1 + 0.01 * (seed % 5)));
+    }
+    results.rows[1].amd_ms = evaluation::make_series(amd_ms);
+    EXPECT_THAT(answer_text(results), HasSubstr("which these seeds cannot tell from what it has."))
+        << limit_ms;
+  }
+  evaluation::Results results = pipelines_of({{"a", 2}, {"clocks", 1}}, 20);
+  results.rows[1].host_sync = "oracle";
+  EXPECT_THAT(
+      answer_text(results),
+      HasSubstr("Perfect host clocks would give it 1.03 ms; it has 2.00 times that limit."));
+  results = pipelines_of({{"a", 2}, {"clocks", 3}}, 20);
+  results.rows[1].host_sync = "oracle";
+  EXPECT_THAT(answer_text(results), HasSubstr("3.09 ms, more than it has: errors of the clocks"));
+}
+
 TEST(ResultsAnswer, WhatFailedIsNamedAndNotRanked) {
   EXPECT_THAT(answer_text(working_sample()),
               HasSubstr("yoon2021_both is the only pipeline that a rig can run and that did not "
@@ -159,20 +187,20 @@ TEST(ResultsAnswer, SaysSoWhereThereIsNoAnswer) {
 }
 
 TEST(ResultsAnswer, ForProgramsHasWhatIsBehindIt) {
-  const Json json = answer_with_fields(working_sample(), results_answer(working_sample(), nullptr));
+  const Json json = fields_of(working_sample());
   EXPECT_EQ(json["ranked_by"], "amd_ms");
   EXPECT_EQ(json["best"], "yoon2021_both");
   EXPECT_EQ(json["failed"][0]["pipeline"], "free_running");
   EXPECT_TRUE(json["pulses"].is_null()) << "how many were due is not known";
   const evaluation::Results three = pipelines_of({{"a", 2}, {"b", 2}, {"c", 3}}, 20);
-  const Json fields = answer_with_fields(three, results_answer(three, nullptr));
+  const Json fields = fields_of(three);
   EXPECT_EQ(fields["not_told_apart"], Json::array({"b"}));
   EXPECT_EQ(fields["next"]["pipeline"], "c");
   EXPECT_EQ(fields["too_few_seeds"], false);
   EXPECT_EQ(fields["pulses"]["due"], 960);
   EXPECT_EQ(fields["pulses"]["mixed_sets"], 0);
   const evaluation::Results few = pipelines_of({{"a", 2}, {"b", 3}}, 2);
-  EXPECT_EQ(answer_with_fields(few, results_answer(few, nullptr))["seeds_needed"], 6);
+  EXPECT_EQ(fields_of(few)["seeds_needed"], 6);
 }
 
 TEST(Summary, HasTheAnswerATableAndWhatFailed) {
