@@ -83,6 +83,8 @@ class Registry {
   }
 
   const std::vector<Entry>& entries() const { return entries_; }
+  // The first so many are simbench's own.
+  std::size_t own() const { return own_; }
 
  private:
   template <class Listed>
@@ -98,7 +100,7 @@ class Registry {
   }
 
   std::vector<Entry> entries_;
-  std::size_t own_ = 0;  // the first so many are simbench's own
+  std::size_t own_ = 0;
 };
 
 template <class Entry>
@@ -107,11 +109,31 @@ Registry<Entry>& registry() {
   return registry;
 }
 
+// The first `most` of a stage.
 template <class Entry>
-std::vector<const AlgorithmInfo*> infos_of() {
+std::vector<const AlgorithmInfo*> infos_of(const Registry<Entry>& registry, std::size_t most) {
   std::vector<const AlgorithmInfo*> infos;
-  for (const Entry& entry : algorithms<Entry>()) infos.push_back(&entry.info);
+  for (const Entry& entry : registry.entries()) {
+    if (infos.size() == most) break;
+    infos.push_back(&entry.info);
+  }
   return infos;
+}
+
+// action(the stage's registry).
+template <class Action>
+auto at_registry(PipelineStage stage, const Action& action) {
+  switch (stage) {
+    case PipelineStage::kHostSync:
+      return action(registry<HostSyncEntry>());
+    case PipelineStage::kCaptureAlignment:
+      return action(registry<CaptureAlignmentEntry>());
+    case PipelineStage::kDeviceTime:
+      return action(registry<DeviceTimeEntry>());
+    case PipelineStage::kGathering:
+      break;
+  }
+  return action(registry<GatheringEntry>());
 }
 
 }  // namespace
@@ -145,17 +167,11 @@ SIMBENCH_STAGE(GatheringEntry)
 #undef SIMBENCH_STAGE
 
 std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage) {
-  switch (stage) {
-    case PipelineStage::kHostSync:
-      return infos_of<HostSyncEntry>();
-    case PipelineStage::kCaptureAlignment:
-      return infos_of<CaptureAlignmentEntry>();
-    case PipelineStage::kDeviceTime:
-      return infos_of<DeviceTimeEntry>();
-    case PipelineStage::kGathering:
-      break;
-  }
-  return infos_of<GatheringEntry>();
+  return at_registry(stage, [](const auto& all) { return infos_of(all, all.entries().size()); });
+}
+
+std::vector<const AlgorithmInfo*> own_algorithms_of(PipelineStage stage) {
+  return at_registry(stage, [](const auto& all) { return infos_of(all, all.own()); });
 }
 
 const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name) {

@@ -1,15 +1,14 @@
-// The answer of a simulated run: what it begins with, with an error budget of the best pipeline
-// where that is affordable.
+// The answer of a simulated run: what it begins with, with what a user can change to improve the
+// best pipeline where looking for it is affordable.
 //
-//   const reports::AnswerText first = run_answer(results, scenario, nullptr);
+//   const reports::ResultsAnswer first = run_answer(results, scenario, {}, nullptr);
 #pragma once
 
 #include <string>
 
-#include "evaluation/answer/answer.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/scoring/results.h"
-#include "reports/text/answer_text.h"
+#include "reports/results/results_answer.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::app {
@@ -18,11 +17,16 @@ namespace simbench::app {
 // nothing. Throws scenarios::InputError if none of the rows has a value of it.
 void rank_by(const std::string& metric, evaluation::Results& results);
 
-// The budget is over the first seeds of the results, at most four, as many as take at most some 20
-// million events; none for programs, whose runs are too slow. The same results have the same
-// answer. Throws what evaluation::error_budgets() throws.
-reports::AnswerText run_answer(const evaluation::Results& results,
-                               const scenarios::Scenario& scenario,
-                               const evaluation::Progress& progress);
+struct AnswerOptions {
+  bool levers = true;
+  unsigned jobs = 0;  // threads; 0: as many as there are cores
+};
+
+// The levers: evaluation/levers/levers.h; none of programs, whose runs are too slow, and none in
+// worlds that are too large. The same results have the same answer. Throws what
+// evaluation::find_levers() throws.
+reports::ResultsAnswer run_answer(const evaluation::Results& results,
+                                  const scenarios::Scenario& scenario, const AnswerOptions& options,
+                                  const evaluation::Progress& progress);
 
 }  // namespace simbench::app

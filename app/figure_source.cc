@@ -514,8 +514,8 @@ ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
     draw(reported, steps, progress);
     reported.answer =
         reports::is_of_files(reported.archive)
-            ? reports::results_answer(reported.archive.results, nullptr)
-            : run_answer(reported.archive.results, scenario_of(reported.archive), nullptr);
+            ? reports::results_answer(reported.archive.results).text
+            : run_answer(reported.archive.results, scenario_of(reported.archive), {}, nullptr).text;
     shorten(reported.notes);
     const std::string other = version_note(reported.archive);
     if (!other.empty()) reported.notes.insert(reported.notes.begin(), other);

@@ -96,7 +96,7 @@ std::vector<Figure> paper_figures(std::uint64_t seed, const evaluation::Progress
 reports::ReportedArchive reported(const PaperRun& run, Archive archive) {
   reports::ReportedArchive all{.archive = std::move(archive)};
   all.figures = archive_figures(all.archive, {.figures = other_result_figures()}).figures;
-  all.answer = run_answer(run.results, run.scenario, nullptr);
+  all.answer = run_answer(run.results, run.scenario, {}, nullptr).text;
   return all;
 }
 

@@ -29,17 +29,19 @@ reports::Document document_in_detail(const evaluation::Results& results,
 
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, Detail detail,
-                         const reports::AnswerText& answer,
+                         const reports::ResultsAnswer& answer,
                          const std::vector<reports::Block>& more) {
   const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
   if (format == "json") {
-    return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
+    return leaderboard ? reports::leaderboard_json(results, answer)
+                       : reports::json(results, answer);
   }
   if (format == "csv") return reports::csv(results);
   if (format == "tidy") return reports::tidy_csv(results);
   // A file has all of it.
   const Detail shown = format == "table" ? detail : Detail::kAll;
-  reports::Document document = document_in_detail(results, scenario, leaderboard, answer, shown);
+  reports::Document document =
+      document_in_detail(results, scenario, leaderboard, answer.text, shown);
   document.blocks.insert(document.blocks.end(), more.begin(), more.end());
   return reports::drawn_as(format, document);
 }

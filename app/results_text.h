@@ -1,6 +1,6 @@
 // What a run prints.
 //
-//   const reports::AnswerText answer = run_answer(results, scenario, nullptr);
+//   const reports::ResultsAnswer answer = run_answer(results, scenario, {}, nullptr);
 //   use(results_text(results, scenario, "table", Detail::kScreen, answer));
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
-#include "reports/text/answer_text.h"
+#include "reports/results/results_answer.h"
 #include "reports/text/block.h"
 #include "scenarios/scenario.h"
 
@@ -20,10 +20,10 @@ enum class Detail : std::uint8_t { kAnswer, kScreen, kAll };
 
 // The results as `simbench run` prints them. `format`: table, markdown, latex, csv, tidy or json;
 // the detail is that of a table, Markdown and LaTeX have all. `answer`: what these begin
-// with. `more`: blocks that follow.
+// with, and what JSON has. `more`: blocks that follow.
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, Detail detail,
-                         const reports::AnswerText& answer,
+                         const reports::ResultsAnswer& answer,
                          const std::vector<reports::Block>& more = {});
 
 }  // namespace simbench::app

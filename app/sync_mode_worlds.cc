@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "evaluation/run/ad_hoc_pipelines.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/loader.h"
 #include "scenarios/words.h"
@@ -61,11 +62,7 @@ std::vector<Override> changes_of(const Scenario& scenario, const PaperMode& pape
   }
   for (const scenarios::Pipeline& each : paper.pipelines) {
     if (has_pipeline(scenario, each.name)) continue;
-    changes.push_back(
-        {"/pipelines/-",
-         fmt::format(
-             R"({{"name": "{}", "host_sync": "{}", "device_time": "{}", "gathering": "{}"}})",
-             each.name, each.host_sync, each.device_time, each.gathering)});
+    changes.push_back({"/pipelines/-", evaluation::pipeline_json(each)});
   }
   return changes;
 }

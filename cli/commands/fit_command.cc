@@ -167,7 +167,7 @@ std::optional<std::string> ranking_text(const scenarios::Scenario& model,
   print_warnings(results->warnings);
   return app::results_text(*results, ranking.scenario, options.format,
                            options.verbose ? app::Detail::kAll : app::Detail::kScreen,
-                           reports::results_answer(*results, nullptr));
+                           reports::results_answer(*results));
 }
 
 int run_fit(const FitOptions& options) {

@@ -95,7 +95,7 @@ int run_replay(const ReplayOptions& options) {
   std::vector<reports::Block> more;
   if (run->streams() != nullptr) more.push_back(reports::frames_block(run->streams()->streams()));
   print_result(app::results_text(*results, run->scenario(), options.format, app::Detail::kAll,
-                                 reports::results_answer(*results, nullptr), more));
+                                 reports::results_answer(*results), more));
   return kOk;
 }
 

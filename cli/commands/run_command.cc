@@ -52,6 +52,7 @@ struct RunOptions {
   std::string format;
   std::string output;
   bool budget = false;
+  bool no_levers = false;
   bool quiet = false;
   bool verbose = false;
   std::vector<std::string> command;
@@ -138,7 +139,7 @@ std::string text_with_prediction(const evaluation::Results& measured,
                                  const scenarios::Scenario& scenario, const RunOptions& options) {
   if (options.format == "json") return reports::json_with_prediction(measured, simulated);
   return app::results_text(measured, scenario, options.format, options.detail(),
-                           reports::results_answer(measured, nullptr),
+                           reports::results_answer(measured),
                            {reports::prediction_block(measured, simulated)});
 }
 
@@ -173,15 +174,15 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
   return kOk;
 }
 
-// Empty for a format that only programs read; nothing after an interruption.
-std::optional<reports::AnswerText> answer_for_people(const evaluation::Results& results,
-                                                     const scenarios::Scenario& scenario,
-                                                     const RunOptions& options) {
-  if (options.format == "csv" || options.format == "tidy" || options.format == "json") {
-    return reports::AnswerText{};
-  }
-  return watched<reports::AnswerText>([&](const evaluation::Progress& progress) {
-    return app::run_answer(results, scenario, progress);
+// Empty for a format without an answer; nothing after an interruption.
+std::optional<reports::ResultsAnswer> answer_of(const evaluation::Results& results,
+                                                const scenarios::Scenario& scenario,
+                                                const RunOptions& options) {
+  if (options.format == "csv" || options.format == "tidy") return reports::ResultsAnswer{};
+  return watched<reports::ResultsAnswer>([&](const evaluation::Progress& progress) {
+    return app::run_answer(results, scenario,
+                           {.levers = !options.no_levers, .jobs = options.evaluation.jobs},
+                           progress);
   });
 }
 
@@ -203,7 +204,7 @@ int run(RunOptions options) {
   app::rank_by(options.rank_by, *results);
   print_warnings(results->warnings);
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
-  const std::optional<reports::AnswerText> answer = answer_for_people(*results, scenario, options);
+  const std::optional<reports::ResultsAnswer> answer = answer_of(*results, scenario, options);
   if (!answer) return kInterrupted;
   print_result(app::results_text(*results, scenario, options.format, options.detail(), *answer));
   return kOk;
@@ -239,6 +240,9 @@ void add_run_command(CommandLine& line) {
       .flag("--verbose", options->verbose,
             "Print all metrics, their meaning and the paper's claims")
       .excludes(quiet);
+  command.flag("--no-levers", options->no_levers,
+               "Do not look for what would improve the best pipeline, which takes as long as\nthe "
+               "run itself");
   command.flag("--budget", options->budget,
                "Instead of the table, divide each pipeline's error among the stages that\n"
                "cause it, and that of its host clocks between world and algorithm (136 runs for\n"

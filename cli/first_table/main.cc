@@ -31,8 +31,8 @@ int print_table_of(const std::string& name) {
   });
   if (!results) return kInterrupted;
   print_warnings(results->warnings);
-  const auto answer = watched<reports::AnswerText>([&](const evaluation::Progress& progress) {
-    return app::run_answer(*results, scenario, progress);
+  const auto answer = watched<reports::ResultsAnswer>([&](const evaluation::Progress& progress) {
+    return app::run_answer(*results, scenario, {}, progress);
   });
   if (!answer) return kInterrupted;
   print_result(app::results_text(*results, scenario, "table", app::Detail::kScreen, *answer));

@@ -4,10 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
+#include "evaluation/run/ad_hoc_pipelines.h"
+#include "recording/collected.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/loader.h"
 
@@ -132,15 +133,8 @@ void add_networks(const RigOption& hosts, const RigRequest& request,
   }
 }
 
-nlohmann::json pipelines_json(const std::vector<scenarios::Pipeline>& pipelines) {
-  auto all = nlohmann::json::array();
-  for (const scenarios::Pipeline& pipeline : pipelines) {
-    all.push_back({{"name", pipeline.name},
-                   {"host_sync", pipeline.host_sync},
-                   {"device_time", pipeline.device_time},
-                   {"gathering", pipeline.gathering}});
-  }
-  return all;
+std::string pipelines_json(const std::vector<scenarios::Pipeline>& pipelines) {
+  return fmt::format("[{}]", fmt::join(collected(pipelines, pipeline_json), ", "));
 }
 
 }  // namespace
@@ -194,7 +188,7 @@ scenarios::Scenario scenario_of(const RigOption& option, const RigRequest& reque
   sets.push_back({"/hosts/count", fmt::format("{}", option.hosts)});
   sets.push_back({"/cameras/count", fmt::format("{}", request.cameras)});
   sets.push_back({"/cameras/cameras_per_host", fmt::format("{}", option.cameras_per_host)});
-  sets.push_back({"/pipelines", pipelines_json(pipelines).dump()});
+  sets.push_back({"/pipelines", pipelines_json(pipelines)});
   for (const Part* part : {&option.host, &option.usb_card, &option.network_switch, &option.clock}) {
     sets.insert(sets.end(), part->sets.begin(), part->sets.end());
   }

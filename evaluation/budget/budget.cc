@@ -1,12 +1,15 @@
 #include "evaluation/budget/budget.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "algorithms/device_time/variants.h"
+#include "algorithms/registry.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/ideal.h"
 
@@ -16,6 +19,24 @@ namespace {
 constexpr const char* kOracle = "oracle";
 
 bool is_steered(const scenarios::Pipeline& pipeline) { return !pipeline.capture_alignment.empty(); }
+
+bool has_polls(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
+  const auto* const device_time =
+      find_algorithm<DeviceTimeEntry>(parse_device_time_name(pipeline.device_time).base);
+  return scenario.cameras.clock_poll.is_on() && device_time != nullptr &&
+         std::ranges::count(device_time->info.needs, Need::kPolls) > 0;
+}
+
+// The stages that one of the pipelines has.
+StageSet stages_of(const scenarios::Scenario& scenario,
+                   const std::vector<scenarios::Pipeline>& pipelines) {
+  StageSet stages((std::size_t{1} << kCommonStages) - 1);
+  for (const scenarios::Pipeline& pipeline : pipelines) {
+    if (is_steered(pipeline)) stages = stages.with(BudgetStage::kGranularity);
+    if (has_polls(scenario, pipeline)) stages = stages.with(BudgetStage::kPolls);
+  }
+  return stages;
+}
 
 template <class Time>
 Time floored(Time time, Nanoseconds quantum) {
@@ -50,20 +71,23 @@ class IdealDelivery final : public ForwardingSink {
 };
 
 // Whether an ideal delivery leaves the world as it is. It takes away the delays that a user
-// measured, which the stages under test alone use; polls and drawn errors are part of the world.
-bool delivery_is_scoring_alone(const scenarios::Cameras& cameras) {
-  return !cameras.clock_poll.is_on() && cameras.calibration == scenarios::CalibrationError{};
+// measured, which the stages under test alone use; drawn errors of them are part of the world.
+bool delivery_is_scoring_alone(const scenarios::CalibrationError& errors) {
+  return errors.delay_error_sigma_ms == 0 && errors.camera_delay_error_sigma_ms == 0;
 }
 
 // All sets of ideal stages, by world: those that change the pipeline or its scoring alone go
 // together, so that they share what they can of the world of the first.
 std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scenario,
-                                                 std::size_t all) {
+                                                 StageSet all) {
   std::vector<BudgetStage> within = {BudgetStage::kGathering, BudgetStage::kHostClock};
-  if (delivery_is_scoring_alone(scenario.cameras)) within.push_back(BudgetStage::kUsbDelivery);
+  if (delivery_is_scoring_alone(scenario.cameras.calibration)) {
+    within.push_back(BudgetStage::kUsbDelivery);
+  }
   std::vector<std::vector<StageSet>> worlds;
-  for (std::size_t bits = 0; bits < all; ++bits) {
+  for (std::size_t bits = 0; bits < StageSet::kSets; ++bits) {
     const StageSet first(bits);
+    if (first.among(all).bits() != bits) continue;
     if (std::ranges::any_of(within, [&](BudgetStage stage) { return first.has(stage); })) continue;
     std::vector<StageSet>& sets = worlds.emplace_back(1, first);
     for (const BudgetStage stage : within) {
@@ -127,13 +151,15 @@ struct WorldScores {
   BySeed physical_ms = BySeed(StageSet::kSets);
 };
 
-// The granularity makes no difference to pipelines that nobody steers.
-void repeat_without_granularity(WorldScores& scores) {
-  constexpr std::size_t kHalf = StageSet::kSets / 2;
+// Stages that are not `present` make no difference.
+void repeat_without_absent(StageSet present, WorldScores& scores) {
   for (WorldScores::BySeed* values :
        {&scores.set_amd_ms, &scores.amd_ms, &scores.set_absolute_error_ms,
         &scores.absolute_error_ms, &scores.physical_ms}) {
-    std::copy_n(values->begin(), kHalf, values->begin() + kHalf);
+    for (std::size_t bits = 0; bits < StageSet::kSets; ++bits) {
+      const std::size_t same = StageSet(bits).among(present).bits();
+      if (same != bits) (*values)[bits] = (*values)[same];
+    }
   }
 }
 
@@ -169,10 +195,12 @@ ErrorParts divide(const std::vector<std::vector<double>>& by_world) {
   return parts;
 }
 
-Budget budget_of(const scenarios::Pipeline& pipeline, const WorldScores& scores) {
+Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline,
+                 const WorldScores& scores) {
   Budget budget;
   budget.pipeline = pipeline.name;
   budget.is_steered = is_steered(pipeline);
+  budget.has_polls = has_polls(scenario, pipeline);
   budget.amd_of_sets = all_exist(scores.set_absolute_error_ms);  // of one camera too
   budget.amd_ms = divide(budget.amd_of_sets ? scores.set_amd_ms : scores.amd_ms);
   budget.absolute_error_ms =
@@ -199,7 +227,9 @@ std::vector<BudgetStage> budget_stages(const Budget& budget) {
   std::vector<BudgetStage> stages;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     const auto each = static_cast<BudgetStage>(stage);
-    if (each != BudgetStage::kGranularity || budget.is_steered) stages.push_back(each);
+    const bool is_absent = (each == BudgetStage::kGranularity && !budget.is_steered) ||
+                           (each == BudgetStage::kPolls && !budget.has_polls);
+    if (!is_absent) stages.push_back(each);
   }
   return stages;
 }
@@ -209,8 +239,9 @@ std::string_view stage_name(const Budget& budget, BudgetStage stage) {
   return kStageNames[static_cast<std::size_t>(stage)];
 }
 
-std::size_t stage_sets(const std::vector<scenarios::Pipeline>& pipelines) {
-  return std::ranges::any_of(pipelines, is_steered) ? StageSet::kSets : StageSet::kSets / 2;
+std::size_t stage_sets(const scenarios::Scenario& scenario,
+                       const std::vector<scenarios::Pipeline>& pipelines) {
+  return std::size_t{1} << std::popcount(stages_of(scenario, pipelines).bits());
 }
 
 std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
@@ -221,11 +252,11 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
   EvaluationOptions of_worlds = options;
   of_worlds.keep_pulses = false;
   of_worlds.share_captures = true;
-  const std::size_t sets_in_all = stage_sets(pipelines);
-  const std::uint64_t total = sets_in_all * pipelines.size() * options.seeds;
+  const StageSet present = stages_of(scenario, pipelines);
+  const std::uint64_t total = stage_sets(scenario, pipelines) * pipelines.size() * options.seeds;
   std::vector<WorldScores> scores(pipelines.size());
   std::uint64_t done_before = 0;
-  for (const std::vector<StageSet>& sets : sets_by_world(scenario, sets_in_all)) {
+  for (const std::vector<StageSet>& sets : sets_by_world(scenario, present)) {
     const scenarios::Scenario world = ideal_scenario(scenario, pipelines.front(), sets.front());
     const Results results = evaluate_choices(
         world, choices_of(scenario, pipelines, sets), [&] { return make_world(world); }, of_worlds,
@@ -239,8 +270,8 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
   }
   std::vector<Budget> budgets;
   for (std::size_t i = 0; i < pipelines.size(); ++i) {
-    if (sets_in_all < StageSet::kSets) repeat_without_granularity(scores[i]);
-    budgets.push_back(budget_of(pipelines[i], scores[i]));
+    repeat_without_absent(present, scores[i]);
+    budgets.push_back(budget_of(scenario, pipelines[i], scores[i]));
   }
   return budgets;
 }

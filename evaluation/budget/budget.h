@@ -1,16 +1,18 @@
 // The error budgets of pipelines: how much of the error of each comes from each stage.
 //
-// Each of the seven stages between a trigger pulse and a frame set can be replaced by its oracle:
+// Each stage between a trigger pulse and a frame set can be replaced by its oracle:
 //
 //   trigger             every pulse on time at every camera
 //   exposure            all exposures equally long and steady
 //   stamp quantisation  stamps without noise, arrivals without quantum (the camera's register keeps
 //                       its microsecond)
 //   device clock        camera oscillators without any error
-//   USB delivery        every frame stamped as if it arrived in the middle of its exposure; polls
-//                       of a camera's clock answered at once
+//   USB delivery        every frame stamped as if it arrived in the middle of its exposure
 //   host clock          every host reads the master's clock
 //   gathering           sets by the true pulse
+//   polls               of the cameras' clocks, answered at once: only of pipelines whose
+//                       device_time needs polls
+//   granularity         frames have lengths of any nanosecond: only of steered pipelines
 //
 // What of the scenario each stage is, and what it is where the stage is ideal, says
 // scenarios/schema.json (scenarios/ideal.h).
@@ -26,7 +28,7 @@
 //
 // Key idea: a stage's part is its Shapley value, the reduction of the error when the stage is
 // replaced by its oracle, averaged over all orders in which the stages can be replaced, and
-// therefore over all 2^7 worlds with some of them ideal, each simulated with the same seeds. The
+// therefore over all 2^n worlds with some of the n ideal, each simulated with the same seeds. The
 // parts and the remainder (the error that is left when all stages are ideal) add up to the error,
 // exactly for each seed. A part may be negative: two errors can cancel. What a stage gains alone is
 // stated beside it (ErrorParts::alone).
@@ -42,15 +44,14 @@
 // others are ideal. Lost frames stay lost. A host synchronisation that looks at frames gets their
 // real arrivals: its use of them is part of the host clock.
 //
-// A pipeline with a capture_alignment has eight stages: "phase" in place of the trigger, which is
-// ideal where all cameras expose at once as far as their granularity lets them (the oracle
-// of capture_alignment), and "granularity", which is ideal where frames have lengths of any
-// nanosecond. What the host clock does to the exposures is in its part of physical_ms.
+// A pipeline with a capture_alignment has a "phase" in place of the trigger, which is ideal where
+// all cameras expose at once as far as their granularity lets them (the oracle of
+// capture_alignment). What the host clock does to the exposures is in its part of physical_ms.
 //
-// Cost: 128 scores of the pipeline per seed (256 of a steered one), over 32 captures in 16 worlds:
-// gathering and delivery only change what is scored, the host clock only the pipeline. 64 captures
-// in 32 worlds where the scenario has polls, or draws errors of its calibrations, which an ideal
-// delivery takes away. The cameras' half of a world is made once for all pipelines
+// Cost: 128 scores of the pipeline per seed (twice as many for each of polls and granularity), over
+// 32 captures in 16 worlds: gathering and delivery only change what is scored, the host clock only
+// the pipeline. Twice as many captures and worlds for each of the two, and where the scenario draws
+// errors of its delays' calibration, which an ideal delivery takes away. The cameras' half of a world is made once for all pipelines
 // (docs/design.md section 2), and so is the capture of an ideal host clock. Memory: on each thread
 // a scorer for every pipeline in four or two sets of stages at a time. Source: Shapley, "A value
 // for n-person games", 1953; docs/design.md section 6. Each oracle is a definition.
@@ -81,16 +82,19 @@ enum class BudgetStage : std::uint8_t {
   kUsbDelivery,
   kHostClock,
   kGathering,
+  kPolls,        // of pipelines whose device_time needs them alone
   kGranularity,  // of pipelines with a capture_alignment alone
 };
 
-inline constexpr std::size_t kStageCount = 8;
+inline constexpr std::size_t kStageCount = 9;
+inline constexpr std::size_t kCommonStages = 7;  // of all pipelines
 // As the schema of scenarios names them.
 inline constexpr std::array<std::string_view, kStageCount> kStageNames = {
     "trigger",      "exposure",   "stamp quantisation", "device clock",
-    "USB delivery", "host clock", "gathering",          "granularity"};
+    "USB delivery", "host clock", "gathering",          "polls",
+    "granularity"};
 
-// A set of stages, as the bits of a number below 2^8.
+// A set of stages, as the bits of a number below 2^9.
 class StageSet {
  public:
   static constexpr std::size_t kSets = std::size_t{1} << kStageCount;
@@ -100,6 +104,8 @@ class StageSet {
   constexpr bool has(BudgetStage stage) const { return (bits_ & bit(stage)) != 0; }
   constexpr std::size_t bits() const { return bits_; }
   constexpr StageSet with(BudgetStage stage) const { return StageSet(bits_ | bit(stage)); }
+  // Those of both.
+  constexpr StageSet among(StageSet others) const { return StageSet(bits_ & others.bits_); }
 
  private:
   static constexpr std::size_t bit(BudgetStage stage) {
@@ -125,6 +131,7 @@ struct ErrorParts {
 struct Budget {
   std::string pipeline;
   bool is_steered = false;  // by a capture_alignment
+  bool has_polls = false;
   bool amd_of_sets = true;
   ErrorParts amd_ms;
   ErrorParts absolute_error_ms;
@@ -137,7 +144,8 @@ std::vector<BudgetStage> budget_stages(const Budget& budget);
 std::string_view stage_name(const Budget& budget, BudgetStage stage);
 
 // How often a budget of these pipelines scores each at a seed.
-std::size_t stage_sets(const std::vector<scenarios::Pipeline>& pipelines);
+std::size_t stage_sets(const scenarios::Scenario& scenario,
+                       const std::vector<scenarios::Pipeline>& pipelines);
 
 // Returns a budget for each pipeline, in this order. Ignores EvaluationOptions::pipelines and
 // keep_pulses. Throws what evaluate() throws.

@@ -23,8 +23,10 @@ struct PipelineBudget {
   HostClockBudget host_clock;
 };
 
-// Runs of each seed, of a pipeline whose host clocks are divided and whose exposures nobody steers.
-inline constexpr std::size_t kBudgetRuns = StageSet::kSets / 2 + kHostClockWorlds;
+// Runs of each seed, of a pipeline whose host clocks are divided, without polls and whose exposures
+// nobody steers.
+inline constexpr std::size_t kBudgetRuns =
+    (std::size_t{1} << kCommonStages) + kHostClockWorlds;
 
 // Returns one for each pipeline, in this order.
 std::vector<PipelineBudget> pipeline_budgets(const scenarios::Scenario& scenario,

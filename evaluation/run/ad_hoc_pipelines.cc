@@ -50,15 +50,20 @@ Override appended(const std::string& name, const Pipeline& first, AdHoc allowed)
         stage.may_be_absent && parts.size() > 1 && parts.size() < kPipelineStages.size();
     at_stage(stated, stage.id) = is_left_out ? "" : *part++;
   }
-  nlohmann::json pipeline = {{"name", name}};
-  for (const StageInfo& stage : kPipelineStages) {
-    const std::string& algorithm = at_stage(stated, stage.id);
-    if (!algorithm.empty()) pipeline[stage.name] = algorithm;
-  }
-  return {"/pipelines/-", pipeline.dump(), label};
+  stated.name = name;
+  return {"/pipelines/-", pipeline_json(stated), label};
 }
 
 }  // namespace
+
+std::string pipeline_json(const Pipeline& pipeline) {
+  nlohmann::json stated = {{"name", pipeline.name}};
+  for (const StageInfo& stage : kPipelineStages) {
+    const std::string& algorithm = at_stage(pipeline, stage.id);
+    if (!algorithm.empty()) stated[stage.name] = algorithm;
+  }
+  return stated.dump();
+}
 
 std::vector<Override> with_ad_hoc_pipelines(const std::string& scenario,
                                             std::vector<Override> overrides,

@@ -35,4 +35,7 @@ std::vector<scenarios::Override> with_ad_hoc_pipelines(const std::string& scenar
                                                        const std::vector<std::string>& names,
                                                        AdHoc allowed = AdHoc::kAllStages);
 
+// A pipeline of algorithms, as a scenario's /pipelines states it.
+std::string pipeline_json(const scenarios::Pipeline& pipeline);
+
 }  // namespace simbench::evaluation

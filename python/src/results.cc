@@ -101,14 +101,14 @@ std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
   return run;
 }
 
-// As the commands have it: a recorded run's has no budget, which needs other worlds.
-const reports::AnswerText& known_answer(Run& run, const py::object& on_progress) {
+// As the commands have it: a recorded run's has no levers, which need other worlds.
+const reports::ResultsAnswer& known_answer(Run& run, const py::object& on_progress) {
   if (!run.answer && (run.recorded || !run.scenario)) {
-    run.answer = reports::results_answer(run.results(), nullptr);
+    run.answer = reports::results_answer(run.results());
   }
   if (!run.answer) {
-    run.answer = watched<reports::AnswerText>(on_progress, [&](const Progress& progress) {
-      return app::run_answer(run.results(), *run.scenario, progress);
+    run.answer = watched<reports::ResultsAnswer>(on_progress, [&](const Progress& progress) {
+      return app::run_answer(run.results(), *run.scenario, {}, progress);
     });
   }
   return *run.answer;
@@ -117,7 +117,7 @@ const reports::AnswerText& known_answer(Run& run, const py::object& on_progress)
 // The text of `simbench run`, as long as `detail` says: "answer", "screen" or "all".
 std::string run_text(Run& run, const std::string& format, const std::string& detail,
                      const py::object& on_progress) {
-  const reports::AnswerText& answer = known_answer(run, on_progress);
+  const reports::ResultsAnswer& answer = known_answer(run, on_progress);
   const app::Detail shown = detail == "answer" ? app::Detail::kAnswer
                             : detail == "all"  ? app::Detail::kAll
                                                : app::Detail::kScreen;
@@ -129,7 +129,7 @@ std::string run_text(Run& run, const std::string& format, const std::string& det
 std::string html_of(Run& run, const py::object& on_progress) {
   const scenarios::TableKind table =
       run.scenario ? run.scenario->evaluation.table : scenarios::TableKind::kPipelines;
-  return reports::html(known_answer(run, on_progress)) +
+  return reports::html(known_answer(run, on_progress).text) +
          reports::html(reports::summary_blocks(run.results(), table));
 }
 

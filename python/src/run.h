@@ -10,7 +10,7 @@
 
 #include "app/recordings.h"
 #include "reports/archive/archive.h"
-#include "reports/text/answer_text.h"
+#include "reports/results/results_answer.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::python {
@@ -37,7 +37,7 @@ struct Run {
   std::optional<scenarios::Scenario> scenario{};    // nothing: unknown, of a results.json alone
   std::shared_ptr<app::RecordedRun> recorded{};     // of a recording folder
   std::optional<reports::Provenance> provenance{};  // of a run that can be saved
-  std::optional<reports::AnswerText> answer{};      // once it was asked for
+  std::optional<reports::ResultsAnswer> answer{};      // once it was asked for
   std::vector<std::string> notes{};
 
   const evaluation::Results& results() const { return archive.results; }

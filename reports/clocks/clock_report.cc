@@ -191,7 +191,7 @@ std::string clock_json(const ClockResults& results) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
   }
   const evaluation::Answer answer = evaluation::answer_of(of);
-  root["answer"] = answer_with_fields(answer, clock_answer(of, answer));
+  root["answer"] = answer_with_fields(answer, clock_answer(of, answer), nullptr);
   root["performance"] = performance_json(of.performance);
   return file_text(root);
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "reports/results/lever_text.h"
 #include "reports/text/answer_json.h"
 
 namespace simbench::reports {
@@ -33,7 +34,8 @@ Json pulses_json(const Row* best) {
 
 }  // namespace
 
-Json answer_with_fields(const Answer& answer, const AnswerText& text) {
+Json answer_with_fields(const Answer& answer, const AnswerText& text,
+                        const evaluation::Levers* levers) {
   Json all = answer_json(text);
   all["ranked_by"] = evaluation::ranked_metric(answer.ranked_by).id;
   all["ranked"] = answer.ranked;
@@ -55,6 +57,8 @@ Json answer_with_fields(const Answer& answer, const AnswerText& text) {
   }
   all["known_within"] = answer.known_within ? Json(*answer.known_within) : Json();
   all["pulses"] = pulses_json(answer.best);
+  all["levers"] = levers == nullptr ? Json() : levers_json(*levers, answer.ranked_by);
+  all["levers_seeds"] = levers == nullptr ? Json() : Json(levers->seeds);
   return all;
 }
 

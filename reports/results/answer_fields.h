@@ -11,18 +11,23 @@
 //     "limit": null or {"pipeline", "times": best / limit},
 //     "known_within": null or the median's 95 % interval as a share of it,
 //     "pulses": of the best; null, or where the pulses are known {"due", "exposed", "delivered",
-//       "whole", "sets", "mixed_sets"}}                     evaluation/scoring/pulse_account.h
+//       "whole", "sets", "mixed_sets"},                     evaluation/scoring/pulse_account.h
+//     "levers": null if they were not looked for, or          reports/results/lever_text.h
+//       [{"what", "from", "to", ...}], "levers_seeds": over how many seeds}
 //
-//   const evaluation::Answer answer = evaluation::answer_of(all_results);
-//   const Json fields = answer_with_fields(answer, results_answer(all_results, answer, nullptr));
+//   const ResultsAnswer answer = results_answer(all_results);
+//   const Json fields = answer_with_fields(answer.data, answer.text, nullptr);
 #pragma once
 
 #include "evaluation/answer/answer.h"
+#include "evaluation/levers/levers.h"
 #include "reports/text/answer_text.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
 
-Json answer_with_fields(const evaluation::Answer& answer, const AnswerText& text);
+// `levers` may be null.
+Json answer_with_fields(const evaluation::Answer& answer, const AnswerText& text,
+                        const evaluation::Levers* levers);
 
 }  // namespace simbench::reports

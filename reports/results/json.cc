@@ -155,6 +155,10 @@ Json performance_json(const evaluation::Performance& cost) {
 }
 
 std::string json(const evaluation::Results& results) {
+  return json(results, results_answer(results));
+}
+
+std::string json(const evaluation::Results& results, const ResultsAnswer& answer) {
   Json root = new_document(kArchiveSchemaVersion);
   root["scenario"] = results.scenario;
   state_derivation(results.derivation, root);
@@ -171,8 +175,8 @@ std::string json(const evaluation::Results& results) {
     root["rows"].push_back(row_json(row, ranked_by));
   }
   state_published_figures(results, root);
-  const evaluation::Answer answer = evaluation::answer_of(results);
-  root["answer"] = answer_with_fields(answer, results_answer(results, answer, nullptr));
+  root["answer"] =
+      answer_with_fields(answer.data, answer.text, answer.levers ? &*answer.levers : nullptr);
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
   root["performance"] = performance_json(results.performance);
   return file_text(root);

@@ -42,6 +42,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
+#include "reports/results/results_answer.h"
 #include "reports/text/json_node.h"
 #include "scenarios/derivation.h"
 
@@ -58,8 +59,10 @@ Json inside_json(const evaluation::Percentile& percentile);
 
 Json performance_json(const evaluation::Performance& cost);
 
-// Indented by two, ends with a line feed.
+// Indented by two, ends with a line feed. The answer is that of the results, without levers if none
+// is given.
 std::string json(const evaluation::Results& results);
+std::string json(const evaluation::Results& results, const ResultsAnswer& answer);
 
 // What a scenario rests on (scenarios/derivation.h), in any document for programs: members beside
 // "scenario", only of a scenario that rests on another or is changed:

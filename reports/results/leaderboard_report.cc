@@ -167,8 +167,8 @@ Document leaderboard_document(const Results& results, const std::string& summary
   return document;
 }
 
-std::string leaderboard_json(const Results& results) {
-  Json root = Json::parse(json(results));
+std::string leaderboard_json(const Results& results, const ResultsAnswer& answer) {
+  Json root = Json::parse(json(results, answer));
   root["leaderboard"] = Json::array();
   for (const Board& board : evaluation::leaderboard(results)) {
     root["leaderboard"].push_back({{"board", board.name},

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
+#include "reports/results/results_answer.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -20,6 +21,6 @@ std::vector<Block> board_blocks(const evaluation::Results& results);
 
 // The boards and the notes of the results. `summary`: the scenario's own description.
 Document leaderboard_document(const evaluation::Results& results, const std::string& summary);
-std::string leaderboard_json(const evaluation::Results& results);
+std::string leaderboard_json(const evaluation::Results& results, const ResultsAnswer& answer);
 
 }  // namespace simbench::reports

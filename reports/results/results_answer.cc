@@ -4,10 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/variants.h"
@@ -15,6 +14,7 @@
 #include "recording/collected.h"
 #include "recording/counted.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/lever_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 
@@ -22,26 +22,14 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Answer;
-using evaluation::Budget;
-using evaluation::kStageCount;
+using evaluation::Levers;
 using evaluation::RankedBy;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
 
 constexpr std::size_t kNamedEquals = 2;  // of those that cannot be told from the best
-constexpr double kSmallShare = 0.05;     // parts of a budget below this have no name
 constexpr double kMuchLarger = 3;        // absolute error / AMD that deserves a word
-constexpr double kWorthWinning = 0.01;   // of the error
-// What each stage would give if it alone were ideal.
-constexpr std::array<const char*, kStageCount> kIdeals = {"pulses on time",
-                                                          "equal exposures",
-                                                          "stamps without noise or steps",
-                                                          "perfect camera clocks",
-                                                          "frames that arrive without delay",
-                                                          "perfect host clocks",
-                                                          "gathering by the true pulse",
-                                                          "frames of any length"};
 
 // "a, b and 7 more".
 std::string some_of(const std::vector<const Row*>& rows) {
@@ -127,41 +115,6 @@ std::string limit_sentence(const Answer& answer) {
   }
   return fmt::format("Perfect host clocks would give it {}; it has {} times that limit.",
                      time_text(median), number_text(answer.times_limit));
-}
-
-const evaluation::ErrorParts& ranked_parts(const Budget& budget, RankedBy ranked_by) {
-  if (ranked_by == RankedBy::kExposureSpread) return budget.physical_ms;
-  return ranked_by == RankedBy::kAmd ? budget.amd_ms : budget.absolute_error_ms;
-}
-
-// What limits it, and what would improve it most.
-std::string budget_sentences(const Answer& answer, const Budget& budget) {
-  if (answer.ranked_by == RankedBy::kHostError || answer.ranked_by == RankedBy::kRmdv) return "";
-  const evaluation::ErrorParts& parts = ranked_parts(budget, answer.ranked_by);
-  const double total = parts.total.mean;
-  if (!(total > 0)) return "";
-  std::array<std::size_t, kStageCount> order{};
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::ranges::greater{},
-                           [&](std::size_t stage) { return parts.stages[stage].mean; });
-  std::string shares;
-  for (const std::size_t stage : order) {
-    const double share = parts.stages[stage].mean / total;
-    if (share < kSmallShare) break;
-    shares += fmt::format(
-        "{}{} {:.0f} %", shares.empty() ? "" : ", ",
-        evaluation::stage_name(budget, static_cast<evaluation::BudgetStage>(stage)), 100 * share);
-  }
-  if (shares.empty()) return "";
-  std::string text = fmt::format("What limits it (error budget over {}): {}.",
-                                 counted(parts.total.values.size(), "seed"), shares);
-  const auto most = std::ranges::max_element(parts.alone, {}, &evaluation::BudgetPart::mean);
-  if (most->mean < kWorthWinning * total) return text;
-  const auto stage = static_cast<std::size_t>(most - parts.alone.begin());
-  const bool is_phase = stage == 0 && budget.is_steered;
-  return text + fmt::format(" Most would be won by {}: {:.0f} % of it.",
-                            is_phase ? "perfect phases" : kIdeals[stage],
-                            100 * std::min(most->mean / total, 1.0));
 }
 
 constexpr double kMuchLost = 0.001;  // of the pulses due: belongs into the first sentence
@@ -321,11 +274,9 @@ std::string uncertainty_text(const Answer& answer) {
   return text + ".";
 }
 
-AnswerText results_answer(const Results& results, const Budget* budget) {
-  return results_answer(results, evaluation::answer_of(results), budget);
-}
+namespace {
 
-AnswerText results_answer(const Results& results, const Answer& answer, const Budget* budget) {
+AnswerText words_of(const Results& results, const Answer& answer, const Levers* levers) {
   if (answer.best == nullptr) {
     AnswerText text{.lead = answer.failed.empty()
                                 ? "No pipeline that a rig can run has a result here."
@@ -345,10 +296,20 @@ AnswerText results_answer(const Results& results, const Answer& answer, const Bu
   text.add("Others", distance_text(results, answer));
   text.add("Failed", failed_text(answer));
   text.add("Limit", limit_sentence(answer));
-  if (budget != nullptr) text.add("Causes", budget_sentences(answer, *budget));
   text.add("Sets", sets_sentence(*answer.best));
+  if (levers != nullptr) {
+    text.add("To improve it", levers_text(*levers, answer.ranked_by, results.seed_count));
+  }
   text.add("Uncertain", uncertainty_text(answer));
   return text;
+}
+
+}  // namespace
+
+ResultsAnswer results_answer(const Results& results, std::optional<Levers> levers) {
+  ResultsAnswer answer{.data = evaluation::answer_of(results), .levers = std::move(levers)};
+  answer.text = words_of(results, answer.data, answer.levers ? &*answer.levers : nullptr);
+  return answer;
 }
 
 }  // namespace simbench::reports

@@ -1,25 +1,32 @@
 // The answer of a run (evaluation/answer/answer.h): which pipeline is best and by how much, how far
-// it is from the limit, what limits it, whether its sets can be trusted, what would improve it
-// most, and what is uncertain. Every sentence is computed from the results; what they do not hold
+// it is from the limit, whether its sets can be trusted, what a user can change to improve it, and
+// what is uncertain. Every sentence is computed from the results; what they do not hold
 // has none.
 //
-//   const AnswerText first = results_answer(all_results, nullptr);
+//   const AnswerText first = results_answer(all_results).text;
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "evaluation/answer/answer.h"
-#include "evaluation/budget/budget.h"
+#include "evaluation/levers/levers.h"
 #include "evaluation/scoring/results.h"
 #include "reports/text/answer_text.h"
 
 namespace simbench::reports {
 
-// `budget`: of the best pipeline; null: unknown, and nothing is said about it.
-AnswerText results_answer(const evaluation::Results& results, const evaluation::Budget* budget);
-// The same of an answer that is there already; comparing many rows takes seconds.
-AnswerText results_answer(const evaluation::Results& results, const evaluation::Answer& answer,
-                          const evaluation::Budget* budget);
+// The answer, what is behind it and its words. The results must outlive it.
+struct ResultsAnswer {
+  evaluation::Answer data{};
+  std::optional<evaluation::Levers> levers{};
+  AnswerText text{};
+};
+
+// `levers`: of the best pipeline; nothing: they were not looked for, and nothing is said of them.
+// Cost: that of answer_of(), which takes seconds of many rows.
+ResultsAnswer results_answer(const evaluation::Results& results,
+                             std::optional<evaluation::Levers> levers = {});
 
 // Its sentences that other answers have too; `answer` has a best pipeline.
 //

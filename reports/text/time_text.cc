@@ -45,4 +45,11 @@ std::string time_band_text(double low_ms, double high_ms) {
                      number_text(high_ms * unit.per_ms), unit.name);
 }
 
+std::string time_change_text(double from_ms, double to_ms) {
+  if (!std::isfinite(from_ms) || !std::isfinite(to_ms)) return "-";
+  const TimeUnit& unit = time_unit_of(std::max(std::abs(from_ms), std::abs(to_ms)));
+  return fmt::format("from {} to {} {}", number_text(from_ms * unit.per_ms),
+                     number_text(to_ms * unit.per_ms), unit.name);
+}
+
 }  // namespace simbench::reports

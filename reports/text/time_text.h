@@ -17,4 +17,7 @@ std::string tick_text(double ms);
 // Both ends in the unit of the one further from zero: "[0.350, 1.20] ms"; "-" if one is not finite.
 std::string time_band_text(double low_ms, double high_ms);
 
+// Both in the unit of the larger: "from 2.92 to 1.89 ms"; "-" if one is not finite.
+std::string time_change_text(double from_ms, double to_ms);
+
 }  // namespace simbench::reports

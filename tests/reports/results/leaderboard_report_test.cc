@@ -77,7 +77,7 @@ TEST(LeaderboardReport, PrintsTheFloorOfUnequalLinks) {
 }
 
 TEST(LeaderboardReport, JsonHasRowsAndBoards) {
-  const auto root = nlohmann::json::parse(leaderboard_json(boards()));
+  const auto root = nlohmann::json::parse(leaderboard_json(boards(), results_answer(boards())));
   EXPECT_EQ(root["rows"].size(), 4U);
   ASSERT_EQ(root["leaderboard"].size(), 2U);
   const auto& mine = root["leaderboard"][1]["online"][1];

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,31 +20,21 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string answer_text(const evaluation::Results& results,
-                        const evaluation::Budget* budget = nullptr) {
-  return whole_text(results_answer(results, budget));
+                        std::optional<evaluation::Levers> levers = {}) {
+  return whole_text(results_answer(results, std::move(levers)).text);
 }
 
-Json fields_of(const evaluation::Results& results) {
-  const evaluation::Answer answer = evaluation::answer_of(results);
-  return answer_with_fields(answer, results_answer(results, answer, nullptr));
+Json fields_of(const evaluation::Results& results, std::optional<evaluation::Levers> levers = {}) {
+  const ResultsAnswer answer = results_answer(results, std::move(levers));
+  return answer_with_fields(answer.data, answer.text, answer.levers ? &*answer.levers : nullptr);
 }
 
-evaluation::BudgetPart equal_part(double mean) {
-  return {.values = {mean, mean}, .mean = mean, .p05 = mean, .p95 = mean};
-}
-
-evaluation::Budget budget_of(double host_clock_ms, double delivery_ms) {
-  evaluation::Budget budget;
-  for (evaluation::BudgetPart& stage : budget.amd_ms.stages) stage = equal_part(0);
-  for (evaluation::BudgetPart& stage : budget.amd_ms.alone) stage = equal_part(0);
-  budget.amd_ms.stages[static_cast<std::size_t>(evaluation::BudgetStage::kHostClock)] =
-      equal_part(host_clock_ms);
-  budget.amd_ms.stages[static_cast<std::size_t>(evaluation::BudgetStage::kUsbDelivery)] =
-      equal_part(delivery_ms);
-  budget.amd_ms.alone[static_cast<std::size_t>(evaluation::BudgetStage::kHostClock)] =
-      equal_part(host_clock_ms / 2);
-  budget.amd_ms.total = equal_part(host_clock_ms + delivery_ms);
-  return budget;
+evaluation::Lever lever_of(const std::string& what, double from, double to) {
+  return {.what = what,
+          .pipeline = "a+b+c",
+          .sets = {{"/cameras/exposure_ms", "4"}},
+          .from = from,
+          .to = to};
 }
 
 // The sample, whose first row did its work and whose second gathered nothing.
@@ -157,7 +148,7 @@ TEST(ResultsAnswer, PulsesThatWereDueAndNeverCameAreInTheLead) {
                           .due_pulses = 960,
                           .exposed_pulses = 480};
   results.loss_reasons = {"/cameras/exposure_ms: too long"};
-  const AnswerText answer = results_answer(results, nullptr);
+  const AnswerText answer = results_answer(results).text;
   EXPECT_THAT(answer.lead,
               HasSubstr("But 51.0 % of the 960 pulses due are lost: 480 not exposed by "
                         "all cameras, 10 exposed and not delivered by all. "
@@ -169,12 +160,29 @@ TEST(ResultsAnswer, PulsesThatWereDueAndNeverCameAreInTheLead) {
   EXPECT_THAT(text, Not(HasSubstr("no pulse is missing")));
 }
 
-TEST(ResultsAnswer, SaysWhatLimitsItAndWhatWouldBeWon) {
-  const evaluation::Budget budget = budget_of(3, 1);
-  EXPECT_THAT(answer_text(working_sample(), &budget),
-              HasSubstr("What limits it (error budget over 2 seeds): host clock 75 %, USB delivery "
-                        "25 %. Most would be won by perfect host clocks: 38 % of it."));
-  EXPECT_THAT(answer_text(working_sample()), Not(HasSubstr("What limits it")));
+TEST(ResultsAnswer, LeversAreFromOneValueToAnotherInOneUnit) {
+  evaluation::Levers levers{.seeds = 32, .algorithms = 80, .changes = 7};
+  levers.effective = {lever_of("device_time x", 2.92, 0.0189),
+                      lever_of("equal exposures", 2.92, 2)};
+  levers.effective[1].missing_from = 0.75;
+  levers.effective[1].missing_to = 0;
+  const std::string text = answer_text(working_sample(), levers);
+  EXPECT_THAT(text, HasSubstr("With device_time x: AMD from 2.92 to 0.0189 ms. With equal "
+                              "exposures: pulses due and not found whole from 75 % to 0 %."));
+  const Json fields = fields_of(working_sample(), levers)["levers"];
+  EXPECT_EQ(fields.size(), 2u);
+  EXPECT_EQ(fields[0]["from"], 2.92);
+  EXPECT_EQ(fields[0]["metric"], "amd_ms");
+  EXPECT_EQ(fields[0]["options"], "--pipelines a+b+c --set /cameras/exposure_ms=4");
+}
+
+TEST(ResultsAnswer, SaysThatNothingTriedHelps) {
+  const evaluation::Levers levers{.seeds = 8, .algorithms = 80, .changes = 1};
+  EXPECT_THAT(answer_text(pipelines_of({{"a", 2}}, 20), levers),
+              HasSubstr("Nothing that was tried improves it by 5 % (over 8 seeds): 80 other "
+                        "algorithms and 1 change of the rig."));
+  EXPECT_THAT(answer_text(working_sample()), Not(HasSubstr("tried")));
+  EXPECT_TRUE(fields_of(working_sample())["levers"].is_null());
 }
 
 TEST(ResultsAnswer, SaysThatAmdHidesWhatAllCamerasShare) {
@@ -204,7 +212,7 @@ TEST(ResultsAnswer, ForProgramsHasWhatIsBehindIt) {
 }
 
 TEST(Summary, HasTheAnswerATableAndWhatFailed) {
-  const AnswerText answer = results_answer(working_sample(), nullptr);
+  const AnswerText answer = results_answer(working_sample()).text;
   const std::string text = plain(summary_document(sample_results(), {.summary = "A fit."}, answer));
   EXPECT_THAT(text, HasSubstr("sample: 2 seeds (1-2)\nyoon2021_both is the only"));
   EXPECT_THAT(text, HasSubstr("2.00 ms"));
