@@ -43,7 +43,12 @@ Part part_of(const json& in) {
             .with = texts_in(in, "with"),
             .hosts = in.value("hosts", std::int64_t{0}),
             .cameras = in.value("cameras", std::int64_t{0}),
-            .slots = in.value("slots", std::int64_t{0})};
+            .slots = in.value("slots", std::int64_t{0}),
+            .world = in.value("world", std::string()),
+            .is_host = in.value("is_host", false),
+            .computers = in.value("computers", std::int64_t{0}),
+            .capture_alignment = texts_in(in, "capture_alignment"),
+            .device_time = texts_in(in, "device_time")};
   for (const json& price : in.at("prices")) {
     part.prices.push_back({.per = word_in<Per>(price.at("per")),
                            .range = {price.at("low_eur"), price.at("high_eur")}});
@@ -69,6 +74,8 @@ void check_part(const Part& part, const Places& places) {
     throw InputError(fmt::format("{}: found no {}, which every {} has", places.describe("/kind"),
                                  member, to_text(kind)));
   };
+  needs(PartKind::kCamera, !part.world.empty(), "world");
+  needs(PartKind::kCamera, !part.device_time.empty(), "device_time");
   needs(PartKind::kHost, part.cameras > 0, "cameras");
   needs(PartKind::kUsbCard, part.cameras > 0, "cameras");
   needs(PartKind::kSwitch, part.hosts > 0, "hosts");

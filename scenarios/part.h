@@ -1,6 +1,6 @@
-// Parts of a rig that a buyer can choose: hosts, USB cards, switches and clock sources, one file
-// per part (scenarios/parts/*.json, whose schema documents every member). `simbench advise`
-// combines them; `simbench list parts` prints them.
+// Parts of a rig that a buyer can choose: cameras, hosts, USB cards, switches and clock sources,
+// one file per part (scenarios/parts/*.json, whose schema documents every member). `simbench
+// advise` combines them; `simbench list parts` prints them.
 //
 // A part states its price class, what it changes in a scenario (as --set would) and what it makes
 // possible. Prices are rough ranges of what is sold, with their source or as assumptions.
@@ -24,11 +24,14 @@
 
 namespace simbench::scenarios {
 
-enum class PartKind : std::uint8_t { kHost, kUsbCard, kSwitch, kClock };
+enum class PartKind : std::uint8_t { kCamera, kHost, kUsbCard, kSwitch, kClock };
 constexpr auto words_of(PartKind) {
   using enum PartKind;
-  return std::to_array<Word<PartKind>>(
-      {{kHost, "host"}, {kUsbCard, "usb_card"}, {kSwitch, "switch"}, {kClock, "clock"}});
+  return std::to_array<Word<PartKind>>({{kCamera, "camera"},
+                                        {kHost, "host"},
+                                        {kUsbCard, "usb_card"},
+                                        {kSwitch, "switch"},
+                                        {kClock, "clock"}});
 }
 
 // How often a price is paid.
@@ -64,11 +67,16 @@ struct Part {
   std::string price_source;
   std::string source;
   std::vector<Override> sets;          // labelled with the part
-  std::vector<std::string> host_sync;  // clocks
-  std::vector<std::string> with;       // switches: clocks for which it matters; empty: all
+  std::vector<std::string> host_sync;  // clocks, cameras that are hosts
+  std::vector<std::string> with;       // switches: parts for which it matters; empty: all
   std::int64_t hosts = 0;              // switches
   std::int64_t cameras = 0;            // hosts, USB cards
   std::int64_t slots = 0;              // hosts
+  std::string world;                   // these and the rest: cameras; a built-in scenario
+  bool is_host = false;
+  std::int64_t computers = 0;
+  std::vector<std::string> capture_alignment;  // empty: a trigger
+  std::vector<std::string> device_time;
 };
 
 // How many of a part a rig has.

@@ -23,6 +23,8 @@ constexpr const char* kAdviseExamples = R"(
 Examples:
   simbench advise --require 'amd<0.1ms' --cameras 24 --rate 60
   simbench advise --require 'error<0.2ms' --require 'recall>99%' --cameras 12 --rate 30 --hosts 2..4
+  simbench advise --require 'exposure_spread<50us' --camera gige_ace --cameras 6 --rate 60
+  simbench advise --require '5mm at 2m/s exposed 1ms' --cameras 12 --rate 30
   simbench advise --require 'amd<1ms' --cameras 18 --rate 45 --parts my_switch.json --format json
   simbench advise --require 'amd<0.1ms' --cameras 24 --rate 60 --per-day --bound-ms 0.06
   simbench advise --require 'amd<1ms' --cameras 24 --rate 60 --set /network/cross_traffic_share=0.3
@@ -169,13 +171,25 @@ void check_rare_options(const AdviseOptions& options) {
                                           options.bound_ms ? "--bound-ms" : "--pipeline"));
 }
 
+void check_hosts_option(const AdviseOptions& options) {
+  const scenarios::Part* const camera = scenarios::find_part(options.request.rig.camera);
+  if (options.hosts.empty() || camera == nullptr || !camera->is_host) return;
+  throw scenarios::InputError(
+      fmt::format("--hosts: found '{}', but each {} is a host of its own; leave it out",
+                  scenarios::shown_text(options.hosts), camera->part));
+}
+
 int advise(AdviseOptions options) {
   check_rare_options(options);
   options.request.requirements = evaluation::parse_requirements(options.require);
   evaluation::RigRequest& rig = options.request.rig;
   set_hosts(options.hosts, rig);
   add_parts(options.parts, rig);
-  rig.sets = overrides_of(options.sets);
+  check_hosts_option(options);
+  if (const auto exposure_ms = evaluation::exposure_ms_of(options.request.requirements)) {
+    rig.sets.push_back({"/cameras/exposure_ms", fmt::format("{}", *exposure_ms)});
+  }
+  for (scenarios::Override& set : overrides_of(options.sets)) rig.sets.push_back(std::move(set));
   const auto advice = watched<evaluation::Advice>(
       [&](const evaluation::Progress& progress) {
         return evaluation::advise(options.request, app::simulated_world, options.advice, progress);
@@ -216,12 +230,16 @@ void add_advise_command(CommandLine& line) {
   command
       .texts("--require", "METRIC<VALUE", options->require,
              "What the rig must do, repeatable: 'amd<0.1ms', 'error<50us', 'recall>99%',\n"
-             "'host_error<10us', ... All must hold at once")
+             "'host_error<10us', ..., or what the task tolerates: '5mm at 2m/s' (5 mm of\n"
+             "movement within a set), '5mm at 2m/s exposed 1ms'. All must hold at once")
       .required();
   command
       .whole_number("--cameras", "N", rig.cameras, 1, evaluation::kMostAdviceCameras,
                     "Cameras of the rig")
       .required();
+  command.text("--camera", "PART", rig.camera,
+               "Which cameras: d455 (triggered), or gige_ace, oak_4 or raspberry_camera_v3\n"
+               "(steered, each a host of its own). Default: d455");
   command.number("--rate", "HZ", rig.rate_hz, 1, 1000, "Frames a second. Default: 30");
   command.text("--hosts", "FEWEST..MOST", options->hosts,
                "How many hosts to try, as in 2..8 or 4. Default: 1..8");

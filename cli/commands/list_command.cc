@@ -243,6 +243,10 @@ std::string part_list_text() {
     add(fmt::format("price: {} [{}]", fmt::join(prices, " and "), part.price_source));
     if (part.cameras > 0) add(fmt::format("cameras = {}", part.cameras));
     if (part.slots > 0) add(fmt::format("slots = {}", part.slots));
+    if (!part.world.empty()) add(fmt::format("as in: {}", part.world));
+    if (!part.capture_alignment.empty()) {
+      add(fmt::format("capture_alignment: {}", fmt::join(part.capture_alignment, ", ")));
+    }
     if (part.hosts > 0) add(fmt::format("hosts = {}", part.hosts));
     for (const scenarios::Override& set : part.sets) {
       add(fmt::format("{} = {}", set.pointer, set.value));

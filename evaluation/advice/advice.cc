@@ -177,23 +177,24 @@ void check_request(const AdviceRequest& request) {
   }
 }
 
-// The device times to choose from, the most usual first.
-std::vector<std::string> advice_device_times() {
-  return {"librealsense_global", "regression_30", "hull_switch_10s_calibrated",
-          "two_way_poll_calibrated"};
-}
-
 }  // namespace
 
 std::vector<Pipeline> candidate_pipelines(const RigOption& option, const AdviceRequest& request) {
   std::vector<Pipeline> pipelines;
+  const scenarios::Part& camera = option.camera;
+  const std::vector<std::string> alignments =
+      camera.capture_alignment.empty() ? std::vector<std::string>{""} : camera.capture_alignment;
   for (const std::string& host_sync : option.host_sync()) {
-    for (const std::string& device_time : advice_device_times()) {
-      for (const std::string& gathering : advice_gatherings(request.requirements)) {
-        pipelines.push_back({.name = fmt::format("{}.{}.{}", host_sync, device_time, gathering),
-                             .host_sync = host_sync,
-                             .device_time = device_time,
-                             .gathering = gathering});
+    for (const std::string& alignment : alignments) {
+      for (const std::string& device_time : camera.device_time) {
+        for (const std::string& gathering : advice_gatherings(request.requirements)) {
+          Pipeline& pipeline = pipelines.emplace_back(Pipeline{.name = "",
+                                                               .host_sync = host_sync,
+                                                               .device_time = device_time,
+                                                               .gathering = gathering,
+                                                               .capture_alignment = alignment});
+          pipeline.name = joined_stages(pipeline, ".");
+        }
       }
     }
   }

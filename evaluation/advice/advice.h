@@ -10,7 +10,7 @@
 // requirements run over kAdviceSeeds, until kWantedOptions do: so many that, if all of them meet
 // the requirements, the interval's lower end is above 95 %. An option is represented by its best
 // pipeline: one whose interval lies above 95 %, of these the most usual (order of
-// the clock's host_sync, of kAdviceDeviceTimes, of gatherings); else the one with the largest
+// the clock's host_sync, of the camera's device_time, of gatherings); else the one with the largest
 // share, then margin.
 //
 // Margin: the limit divided by the 95 % quantile over seeds (Requirement::margin_of), the smallest

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string_view>
+#include <utility>
 
-#include "recording/collected.h"
+#include "recording/number_in.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -101,6 +103,42 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(begin, text.find_last_not_of(" \t") - begin + 1));
 }
 
+// A number with its unit at the beginning of a text, which loses it: "5 mm at ..." is 5, "mm".
+struct Quantity {
+  double value = 0;
+  std::string unit;
+};
+std::optional<Quantity> next_quantity(std::string& text) {
+  text = trimmed(text);
+  const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+  const auto value = number_in<double>(std::string_view(text).substr(0, end));
+  if (!value) return std::nullopt;
+  text = trimmed(text.substr(end));
+  const std::size_t unit_end = std::min(text.find(' '), text.size());
+  Quantity quantity{.value = *value, .unit = text.substr(0, unit_end)};
+  text = trimmed(text.substr(unit_end));
+  return quantity;
+}
+
+// The next quantity in the unit that has the factor 1; the text before it is `word`.
+double expected(std::string& rest, std::string_view word,
+                const std::map<std::string, double>& factors, const std::string& whole) {
+  const auto refuse_it = [&] {
+    refuse(whole,
+           "LENGTH at SPEED, or LENGTH at SPEED exposed TIME, as in '5mm at 2m/s' or '5mm at 2m/s "
+           "exposed 1ms' (um, mm, cm, m; mm/s, cm/s, m/s, km/h; us, ms, s)");
+  };
+  if (!rest.starts_with(word)) refuse_it();
+  rest.erase(0, word.size());
+  const std::optional<Quantity> quantity = next_quantity(rest);
+  if (!quantity || !factors.contains(quantity->unit) || !(quantity->value > 0)) refuse_it();
+  return quantity->value * factors.at(quantity->unit);
+}
+
+bool is_tolerance(const std::string& text) {
+  return text.find_first_of("<>") == std::string::npos && text.find(" at ") != std::string::npos;
+}
+
 }  // namespace
 
 double Requirement::size_of(double value) const {
@@ -130,7 +168,9 @@ Requirement parse_requirement(const std::string& text) {
   const std::string whole = trimmed(text);
   const std::size_t sign = whole.find_first_of("<>");
   if (sign == std::string::npos) {
-    refuse(text, "METRIC<VALUE or METRIC>VALUE with a unit, as in 'amd<0.1ms'");
+    refuse(text,
+           "METRIC<VALUE or METRIC>VALUE with a unit, as in 'amd<0.1ms', or the task's tolerance "
+           "with its speed, as in '5mm at 2m/s'");
   }
   Requirement requirement{.metric = &metric_named(trimmed(whole.substr(0, sign))),
                           .is_least = whole[sign] == '>',
@@ -154,10 +194,56 @@ Requirement parse_requirement(const std::string& text) {
   return requirement;
 }
 
+std::vector<Requirement> parse_tolerance(const std::string& text) {
+  const std::map<std::string, double> lengths = {{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1e3}};
+  const std::map<std::string, double> speeds = {
+      {"mm/s", 1e-3}, {"cm/s", 1e-2}, {"m/s", 1}, {"km/h", 1 / 3.6}};  // mm in a millisecond
+  const std::map<std::string, double> times = {{"us", 1e-3}, {"ms", 1}, {"s", 1e3}};
+  std::string rest = trimmed(text);
+  const double length_mm = expected(rest, "", lengths, text);
+  const double speed = expected(rest, "at ", speeds, text);
+  std::optional<double> exposure_ms;
+  if (!rest.empty()) exposure_ms = expected(rest, "exposed ", times, text);
+  if (!rest.empty()) refuse(text, "nothing behind the tolerance");
+  const double whole_ms = length_mm / speed;
+  const double limit_ms = whole_ms - exposure_ms.value_or(0);
+  if (!(limit_ms > 0)) {
+    refuse(text, fmt::format("an exposure below {:.3g} ms, in which what moves passes the whole "
+                             "tolerance",
+                             whole_ms));
+  }
+  Requirement spread = parse_requirement(fmt::format("exposure_spread<={:.4g}ms", limit_ms));
+  spread.limit = limit_ms;
+  Requirement pure = parse_requirement(fmt::format("precision>={:g}%", 100 * kWantedPureSets));
+  for (Requirement* each : {&spread, &pure}) {
+    each->tolerance = trimmed(text);
+    each->exposure_ms = exposure_ms;
+  }
+  return {spread, pure};
+}
+
 std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts) {
-  std::vector<Requirement> requirements = collected(texts, parse_requirement);
+  std::vector<Requirement> requirements;
+  for (const std::string& text : texts) {
+    if (is_tolerance(text)) {
+      std::ranges::move(parse_tolerance(text), std::back_inserter(requirements));
+    } else {
+      requirements.push_back(parse_requirement(text));
+    }
+  }
   if (requirements.empty()) refuse("", "at least one, as in 'amd<0.1ms'");
   return requirements;
+}
+
+std::optional<double> exposure_ms_of(const std::vector<Requirement>& requirements) {
+  std::optional<double> exposure_ms;
+  for (const Requirement& each : requirements) {
+    if (exposure_ms && each.exposure_ms && *exposure_ms != *each.exposure_ms) {
+      refuse(each.tolerance, "one exposure in all tolerances");
+    }
+    if (each.exposure_ms) exposure_ms = each.exposure_ms;
+  }
+  return exposure_ms;
 }
 
 }  // namespace simbench::evaluation

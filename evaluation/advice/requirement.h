@@ -6,6 +6,13 @@
 // Metrics with a sign (bias) are bounded by their size. A metric that no direction improves takes
 // either bound.
 //
+// A need may also be the tolerance of the task, "5mm at 2m/s": what moves at that speed may be seen
+// at most so far apart by the cameras of a set. It becomes two requirements: exposures of a pulse
+// at most 2.5 ms apart in the mean, and at least kWantedPureSets of the sets from one pulse, since
+// the others are a frame period apart. "5mm at 2m/s exposed 1ms" counts the blur too: the object
+// passes 2 mm while a camera exposes for 1 ms, which leaves 1.5 ms; the rig then exposes for so
+// long.
+//
 // Refused are bounds that say nothing ("recall>0") and those that nothing can meet ("amd<0",
 // "recall>100%").
 //
@@ -14,6 +21,7 @@
 //   requirement.is_met_by(0.05);  // true
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,12 +29,16 @@
 
 namespace simbench::evaluation {
 
+inline constexpr double kWantedPureSets = 0.99;
+
 struct Requirement {
   const Metric* metric = nullptr;
-  bool is_least = false;     // values above the limit meet it; else those below
-  bool takes_limit = false;  // the limit itself does
-  double limit = 0;          // in the metric's unit
-  std::string text{};        // as it was asked
+  bool is_least = false;                // values above the limit meet it; else those below
+  bool takes_limit = false;             // the limit itself does
+  double limit = 0;                     // in the metric's unit
+  std::string text{};                   // as it was asked, or what a tolerance became
+  std::string tolerance{};              // "5mm at 2m/s"; empty: it was asked for
+  std::optional<double> exposure_ms{};  // of that tolerance
 
   // NaN meets nothing.
   bool is_met_by(double value) const;
@@ -41,7 +53,12 @@ struct Requirement {
 
 // Throws scenarios::InputError, whose message begins with "--require".
 Requirement parse_requirement(const std::string& text);
-// Reads several, separated by commas or given in turn; returns at least one.
+// The requirements that a tolerance becomes. Throws likewise.
+std::vector<Requirement> parse_tolerance(const std::string& text);
+// Reads requirements and tolerances; returns at least one requirement.
 std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts);
+
+// For which the rig exposes; nothing: it is not asked for. Throws for two different ones.
+std::optional<double> exposure_ms_of(const std::vector<Requirement>& requirements);
 
 }  // namespace simbench::evaluation

@@ -12,7 +12,8 @@ std::vector<PipelineBudget> pipeline_budgets(const scenarios::Scenario& scenario
                                              const Progress& progress) {
   // The host clocks first: only they know how many of the pipelines they run.
   std::uint64_t host_clock_runs = 0;
-  const std::uint64_t stage_runs = stage_sets(scenario, pipelines) * pipelines.size() * options.seeds;
+  const std::uint64_t stage_runs =
+      stage_sets(scenario, pipelines) * pipelines.size() * options.seeds;
   std::vector<HostClockBudget> host_clocks = host_clock_budgets(
       scenario, pipelines, make_world, options, [&](std::uint64_t done, std::uint64_t total) {
         host_clock_runs = total;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -22,6 +23,7 @@ using scenarios::Pipeline;
 using scenarios::Scenario;
 
 constexpr std::size_t kMostVerifiedChanges = 4;
+constexpr std::size_t kSecondRound = 3;  // of a stage
 
 // Something to try: a pipeline in the world that `sets` make.
 struct Trial {
@@ -72,38 +74,46 @@ bool has_calibration(const Pipeline& pipeline) {
   return parse_device_time_name(pipeline.device_time).calibrated;
 }
 
-// The algorithms of a stage, device_time with its variants and, uncalibrated ones, calibrated.
-std::vector<std::string> names_of(const StageInfo& stage, const Pipeline& best) {
-  std::vector<std::string> names;
-  for (const AlgorithmInfo* info : own_algorithms_of(stage.id)) {
-    if (stage.id != PipelineStage::kDeviceTime) {
-      names.push_back(info->name);
-      continue;
-    }
-    DeviceTimeName as = parse_device_time_name(best.device_time);
-    std::ranges::move(variants_of(info->name, as), std::back_inserter(names));
-    if (as.calibrated) continue;
+// A base with its variants and, where the best has no calibration, with one.
+std::vector<std::string> all_variants_of(const std::string& base, const Pipeline& best) {
+  DeviceTimeName as = parse_device_time_name(best.device_time);
+  std::vector<std::string> names = variants_of(base, as);
+  if (!as.calibrated) {
     as.calibrated = true;
-    std::ranges::move(variants_of(info->name, as), std::back_inserter(names));
+    std::ranges::move(variants_of(base, as), std::back_inserter(names));
   }
   return names;
 }
 
+Trial trial_of(PipelineStage stage, const std::string& name, const Pipeline& best) {
+  Trial trial{.what = std::string(name_of(stage)) + " " + name, .pipeline = best};
+  at_stage(trial.pipeline, stage) = name;
+  trial.calibrates = has_calibration(trial.pipeline) != has_calibration(best);
+  if (trial.calibrates) trial.what += " (delays measured once)";
+  return trial;
+}
+
+// Each algorithm in its place, device_time with the suffixes of the best.
 std::vector<Trial> algorithm_trials(const Pipeline& best, bool needs_pulses) {
   std::vector<Trial> trials;
+  const DeviceTimeName device_time = parse_device_time_name(best.device_time);
+  const std::string suffixes = best.device_time.substr(device_time.base.size());
   for (const StageInfo& stage : kPipelineStages) {
     const std::string& now = at_stage(best, stage.id);
     if (now.empty() || (stage.id == PipelineStage::kGathering && !needs_pulses)) continue;
-    for (std::string& name : names_of(stage, best)) {
-      if (name == now) continue;
-      Trial trial{.what = std::string(stage.name) + " " + name, .pipeline = best};
-      at_stage(trial.pipeline, stage.id) = std::move(name);
-      trial.calibrates = has_calibration(trial.pipeline) != has_calibration(best);
-      if (trial.calibrates) trial.what += " (measured once)";
-      trials.push_back(std::move(trial));
+    for (const AlgorithmInfo* info : own_algorithms_of(stage.id)) {
+      const bool has_suffixes = stage.id == PipelineStage::kDeviceTime;
+      const std::string name = info->name + (has_suffixes ? suffixes : "");
+      if (name != now) trials.push_back(trial_of(stage.id, name, best));
     }
   }
   return trials;
+}
+
+const StageInfo& stage_that_differs(const Pipeline& a, const Pipeline& b) {
+  return *std::ranges::find_if(kPipelineStages, [&](const StageInfo& stage) {
+    return at_stage(a, stage.id) != at_stage(b, stage.id);
+  });
 }
 
 // A search for the levers of one pipeline.
@@ -123,11 +133,8 @@ class LeverSearch {
     const auto found = std::ranges::find(scenario_.pipelines, best_.pipeline, &Pipeline::name);
     if (found == scenario_.pipelines.end() || found->programs) return std::nullopt;
     if (!plan_seeds()) return std::nullopt;
-    const bool needs_pulses = missing_share(best_) > 0;
-    std::vector<Trial> trials = algorithm_trials(*found, needs_pulses);
-    all_ = screening_seeds_ * (trials.size() + rig_changes(scenario_).size()) +
-           levers_.seeds * kMostVerified;
-    screen_algorithms(*found, std::move(trials));
+    all_ = expected_runs();
+    screen_algorithms(*found);
     screen_changes(*found);
     verify();
     return std::move(levers_);
@@ -167,6 +174,15 @@ class LeverSearch {
             .share_captures = true};
   }
 
+  // About as many as there will be.
+  std::uint64_t expected_runs() const {
+    std::uint64_t algorithms = 0;
+    for (const StageInfo& stage : kPipelineStages) algorithms += own_algorithms_of(stage.id).size();
+    constexpr std::uint64_t kOfSecondRound = 30;
+    return algorithms + screening_seeds_ * (kOfSecondRound + rig_changes(scenario_).size()) +
+           levers_.seeds * kMostVerified;
+  }
+
   Progress progress() const {
     if (!caller_) return {};
     return
@@ -204,36 +220,71 @@ class LeverSearch {
     return choices;
   }
 
-  void screen_algorithms(const Pipeline& best, std::vector<Trial> trials) {
+  // The rows of trials in the world as it is, those that can be compared, the best first. The value
+  // of the best pipeline over these seeds is then before_.
+  std::vector<Screened> screened(const Pipeline& best, std::vector<Trial> trials,
+                                 const EvaluationOptions& options) {
     std::vector<PipelineChoice> choices = choices_of(best, trials);
     const Results results = evaluate_choices(
-        scenario_, std::move(choices), [this] { return make_world_(scenario_); }, screening(),
+        scenario_, std::move(choices), [this] { return make_world_(scenario_); }, options,
         progress());
-    done_ += screening_seeds_ * results.rows.size();
-    before_ = value_of(results.rows.front(), ranked_by_);
+    done_ += options.seeds * results.rows.size();
     before_row_ = results.rows.front();
-    levers_.algorithms = trials.size();
-    std::vector<Screened> promising;
+    before_ = value_of(before_row_, ranked_by_);
+    std::vector<Screened> rows;
     for (std::size_t i = 0; i < trials.size(); ++i) {
+      tried_.insert(joined_stages(trials[i].pipeline, "+"));
       const Row& row = results.rows[i + 1];
-      const Value value = value_of(row, ranked_by_);
-      if (!is_comparable(row) || !is_sound(row, before_row_) || !is_promising(value, before_)) {
-        continue;
-      }
-      promising.push_back({std::move(trials[i]), value});
+      if (!is_comparable(row) || !is_sound(row, before_row_)) continue;
+      rows.push_back({std::move(trials[i]), value_of(row, ranked_by_)});
     }
+    std::ranges::stable_sort(rows, is_better, &Screened::value);
+    return rows;
+  }
+
+  // All algorithms at one seed, then the first of each stage, device_time with its variants, at
+  // more.
+  void screen_algorithms(const Pipeline& best) {
+    EvaluationOptions one = screening();
+    one.seeds = 1;
+    const bool needs_pulses = missing_share(best_) > 0;
+    std::vector<Screened> first = screened(best, algorithm_trials(best, needs_pulses), one);
+    std::vector<Screened> promising = screened(best, second_round(best, first), screening());
+    std::erase_if(promising,
+                  [this](const Screened& each) { return !is_promising(each.value, before_); });
+    levers_.algorithms = tried_.size();
     keep_best_of_each(best, std::move(promising));
+  }
+
+  static std::vector<Trial> second_round(const Pipeline& best, const std::vector<Screened>& first) {
+    std::map<PipelineStage, std::size_t> kept;
+    std::set<std::string> bases = {parse_device_time_name(best.device_time).base};
+    std::vector<Trial> trials;
+    for (const Screened& each : first) {
+      const StageInfo& stage = stage_that_differs(each.trial.pipeline, best);
+      if (++kept[stage.id] > kSecondRound) continue;
+      if (stage.id == PipelineStage::kDeviceTime) {
+        bases.insert(parse_device_time_name(each.trial.pipeline.device_time).base);
+      } else {
+        trials.push_back(each.trial);
+      }
+    }
+    for (const std::string& base : bases) {
+      for (const std::string& name : all_variants_of(base, best)) {
+        if (name != best.device_time) {
+          trials.push_back(trial_of(PipelineStage::kDeviceTime, name, best));
+        }
+      }
+    }
+    return trials;
   }
 
   // The best of each stage, the calibrated apart, and the first two together.
   void keep_best_of_each(const Pipeline& best, std::vector<Screened> promising) {
-    std::ranges::stable_sort(promising, is_better, &Screened::value);
     std::set<std::string> kept;
     for (Screened& each : promising) {
-      std::string stage = each.trial.calibrates ? "calibrated " : "";
-      for (const StageInfo& info : kPipelineStages) {
-        if (at_stage(each.trial.pipeline, info.id) != at_stage(best, info.id)) stage += info.name;
-      }
+      const std::string stage = (each.trial.calibrates ? "calibrated " : "") +
+                                std::string(stage_that_differs(each.trial.pipeline, best).name);
       if (kept.insert(stage).second) to_verify_.push_back(std::move(each.trial));
     }
     add_both(best);
@@ -248,7 +299,7 @@ class LeverSearch {
       if (each.pipeline.device_time != best.device_time && !each.calibrates) device_time = &each;
     }
     if (host_sync == nullptr || device_time == nullptr) return;
-    Trial both{.what = host_sync->what + " with " + device_time->what, .pipeline = best};
+    Trial both{.what = host_sync->what + " and " + device_time->what, .pipeline = best};
     both.pipeline.host_sync = host_sync->pipeline.host_sync;
     both.pipeline.device_time = device_time->pipeline.device_time;
     to_verify_.push_back(std::move(both));
@@ -319,12 +370,14 @@ class LeverSearch {
     std::vector<double> before = ranked_series(best_, ranked_by_).values;
     before.resize(levers_.seeds);
     std::vector<Lever> levers;
+    std::set<std::size_t> calibrated;
     std::vector<ComparisonTask> tasks;
     for (Trial& trial : to_verify_) {
       const std::optional<Row> row = row_of(trial, options, /*keeps_name=*/false);
       if (!row || !is_comparable(*row) || !is_sound(*row, best_)) continue;
       const Series& after = ranked_series(*row, ranked_by_);
       tasks.push_back({pair_up(before, after.values), {}});
+      if (trial.calibrates) calibrated.insert(levers.size());
       levers.push_back({.what = trial.what,
                         .pipeline = trial.pipeline.name,
                         .sets = trial.sets,
@@ -335,7 +388,22 @@ class LeverSearch {
     }
     const std::vector<PairedComparison> effects = compare_together(tasks);
     for (std::size_t i = 0; i < levers.size(); ++i) levers[i].effect = effects[i];
+    drop_vain_calibration(calibrated, levers);
     keep_effective(std::move(levers));
+  }
+
+  // A measured calibration that gives no more than an algorithm without one.
+  static void drop_vain_calibration(const std::set<std::size_t>& calibrated,
+                                    std::vector<Lever>& levers) {
+    for (auto at = calibrated.rbegin(); at != calibrated.rend(); ++at) {
+      const double to = levers[*at].to;
+      std::size_t i = 0;
+      const bool is_vain = std::ranges::any_of(levers, [&](const Lever& other) {
+        return !calibrated.contains(i++) && other.sets.empty() &&
+               other.to <= to * (1 + kSmallestGain);
+      });
+      if (is_vain) levers.erase(levers.begin() + static_cast<std::ptrdiff_t>(*at));
+    }
   }
 
   void keep_effective(std::vector<Lever> levers) {
@@ -362,6 +430,7 @@ class LeverSearch {
   std::uint64_t all_ = 0;   // runs, about
   Row before_row_;          // the best over the screening seeds
   Value before_;
+  std::set<std::string> tried_;
   std::vector<Trial> to_verify_;
   Levers levers_;
 };

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <map>
 
 #include "recording/collected.h"
 #include "recording/counted.h"
@@ -53,14 +54,19 @@ std::string verdict(const OptionAdvice& option) {
   return "no";
 }
 
-std::vector<std::string> part_names(const RigOption& option) {
-  std::vector<std::string> names = {option.host.part};
-  if (option.cards > 0) names.push_back(option.usb_card.part);
-  if (option.hosts > 1) {
-    names.push_back(option.network_switch.part);
-    names.push_back(option.clock.part);
+// The parts that the option has.
+std::vector<const scenarios::Part*> parts_of(const RigOption& option) {
+  std::vector<const scenarios::Part*> parts;
+  if (option.camera.is_host) parts.push_back(&option.camera);
+  for (const scenarios::Part* part :
+       {&option.host, &option.usb_card, &option.network_switch, &option.clock}) {
+    if (!part->part.empty()) parts.push_back(part);
   }
-  return names;
+  return parts;
+}
+
+std::vector<std::string> part_names(const RigOption& option) {
+  return collected(parts_of(option), &scenarios::Part::part);
 }
 
 Table options_table(const Advice& advice) {
@@ -88,8 +94,7 @@ Table options_table(const Advice& advice) {
   fields.push_back({{"margin"}, [](const auto& each) { return margin_text(each.best().margin); }});
   fields.push_back({{"best pipeline", Align::kLeft}, [](const auto& each) {
                       const scenarios::Pipeline& best = each.best().pipeline;
-                      return fmt::format("{} + {} + {}", best.host_sync, best.device_time,
-                                         best.gathering);
+                      return joined_stages(best, " + ");
                     }});
   return table_of(fields, advice.options, 2);
 }
@@ -124,13 +129,12 @@ Block assumptions_block(const Advice& advice) {
       "not known. A host synchronisation that is installed badly is worse than here. Device times "
       "by polls need a program that reads the cameras' clocks; calibrated ones need the delays of "
       "the camera model, measured as a careful laboratory does.",
-      evaluation::kAdviceScenario)};
+      advice.options.front().option.camera.world)};
   std::vector<std::string> seen;
   for (const OptionAdvice& each : advice.options) {
     const RigOption& option = each.option;
-    for (const scenarios::Part* part :
-         {&option.host, &option.usb_card, &option.network_switch, &option.clock}) {
-      if (part->part.empty() || std::ranges::count(seen, part->part) > 0) continue;
+    for (const scenarios::Part* part : parts_of(option)) {
+      if (std::ranges::count(seen, part->part) > 0) continue;
       seen.push_back(part->part);
       block.items.push_back(part_line(*part));
     }
@@ -163,6 +167,19 @@ std::string nothing_meets(const Advice& advice) {
       nearest->option.name(), best.pipeline.name, best.met, best.seeds,
       std::isnan(best.margin) ? "no margin, since a metric that is asked for has no value there"
                               : "a margin of " + margin_text(best.margin));
+}
+
+// What the tolerances of the task became; "" without any.
+std::string tolerance_text(const Advice& advice) {
+  std::map<std::string, std::vector<std::string>> became;
+  for (const Requirement& each : advice.request.requirements) {
+    if (!each.tolerance.empty()) became[each.tolerance].push_back(each.text);
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [tolerance, texts] : became) {
+    sentences.push_back(fmt::format("{} is taken as {}.", tolerance, fmt::join(texts, " and ")));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 Json pipeline_json(const PipelineAdvice& pipeline, const Advice& advice) {
@@ -211,7 +228,11 @@ std::string price_class(const scenarios::PriceRange& price) {
 }
 
 AnswerText advice_answer(const Advice& advice) {
-  if (!advice.recommended) return {.lead = nothing_meets(advice)};
+  if (!advice.recommended) {
+    AnswerText answer{.lead = nothing_meets(advice)};
+    answer.add("Need", tolerance_text(advice));
+    return answer;
+  }
   const OptionAdvice& option = advice.options[*advice.recommended];
   const PipelineAdvice& best = option.best();
   AnswerText answer{.lead = fmt::format(
@@ -220,6 +241,7 @@ AnswerText advice_answer(const Advice& advice) {
                         option.option.name(), requirements_text(advice), asked_rig_text(advice),
                         best.met, best.seeds, 100 * best.interval().low, 100 * best.interval().high,
                         best.pipeline.name)};
+  answer.add("Need", tolerance_text(advice));
   answer.add("Price",
              fmt::format("It is the cheapest that does with 95 %: price class {}, without cameras "
                          "and trigger.",
@@ -246,6 +268,7 @@ Json advice_json(const Advice& advice) {
   Json root = new_document();
   root.update(
       {{"answer", answer_json(advice_answer(advice))},
+       {"camera", advice.request.rig.camera},
        {"cameras", advice.request.rig.cameras},
        {"rate_hz", advice.request.rig.rate_hz},
        {"requirements", Json::array()},
@@ -258,6 +281,7 @@ Json advice_json(const Advice& advice) {
   for (const Requirement& each : advice.request.requirements) {
     root["requirements"].push_back(each.text);
   }
+  root["tolerances"] = tolerance_text(advice);
   if (advice.recommended) root["recommended"] = *advice.recommended;
   if (advice.fails_first) {
     root["fails_first"] = {{"metric", advice.fails_first->metric},

@@ -1,6 +1,7 @@
 #include "sim/camera/shutter.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace simbench::sim {
 
@@ -17,6 +18,12 @@ Nanoseconds Shutter::periods(double count) const {
   return from_ns(count * settings_.mode_period_ns);
 }
 
+std::int64_t Shutter::periods_of_exposure() const {
+  const double of_exposure =
+      static_cast<double>(settings_.exposure.count()) / settings_.mode_period_ns;
+  return std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(of_exposure)), 1);
+}
+
 Exposure Shutter::end_aligned(TrueTime period_start, std::int64_t pulse) const {
   const TrueTime end = period_start + settings_.trigger_to_exposure + periods(1.0);
   return {pulse, end - settings_.exposure - settings_.readout, end};
@@ -29,7 +36,7 @@ std::optional<Exposure> Shutter::on_pulse(TrueTime at, std::int64_t pulse) {
   if (at < ignore_until_) return std::nullopt;
   const double unguarded = 1.0 - settings_.guard_fraction;
   if (settings_.mode == ShutterMode::kSlave) {
-    ignore_until_ = at + periods(unguarded);
+    ignore_until_ = at + std::max(periods(unguarded), settings_.exposure);
     return end_aligned(at, pulse);
   }
   const TrueTime start = at + settings_.trigger_to_exposure;
@@ -47,10 +54,10 @@ std::optional<Exposure> Shutter::on_timer(TrueTime now) {
       free_run_frames_ = 0;
       return std::nullopt;
     }
-    ignore_until_ = now + periods(1.0 - settings_.guard_fraction);
+    ignore_until_ = now + std::max(periods(1.0 - settings_.guard_fraction), settings_.exposure);
   }
   // Counted from the origin, so that rounding to nanoseconds does not add up to a rate error.
-  ++free_run_frames_;
+  free_run_frames_ += periods_of_exposure();
   next_timer_ = free_run_origin_ + periods(static_cast<double>(free_run_frames_));
   return end_aligned(now, kNoPulse);
 }

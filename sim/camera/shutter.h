@@ -7,10 +7,11 @@
 //    and a slow camera without a guard yields every second pulse of a half-rate trigger too.
 //  - slave (depth; colour too in full slave): the exposure *ends* one mode period after the pulse,
 //    so a longer exposure starts earlier and arrives no later. Pulses closer together than a mode
-//    period less the guard are ignored. Without pulses the stream runs free after a while, at its
+//    period less the guard, or than the exposure lasts, are ignored: no two exposures of a row
+//    overlap. Without pulses the stream runs free after a while, at its
 //    own mode rate; the next pulse takes over again.
 //  - free-running (default and master mode, and streams the mode does not synchronise): exposures
-//    end at a fixed phase of the camera's own mode period.
+//    end at a fixed phase of the camera's own mode period; one that is longer takes several.
 //
 // A rolling shutter exposes its rows one after the other, each for the exposure time; the last row
 // begins `readout` after the first. An Exposure then lasts from the first row's start to the last
@@ -72,6 +73,8 @@ class Shutter {
 
  private:
   Nanoseconds periods(double count) const;
+  // Mode periods that an exposure takes, at least 1.
+  std::int64_t periods_of_exposure() const;
   Exposure end_aligned(TrueTime period_start, std::int64_t pulse) const;
 
   ShutterSettings settings_;

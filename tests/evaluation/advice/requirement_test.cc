@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 std::string refusal(const std::string& text) {
   try {
-    (void)parse_requirement(text);
+    (void)parse_requirements({text});
   } catch (const scenarios::InputError& error) {
     return error.what();
   }
@@ -54,6 +54,38 @@ TEST(Requirement, IsMetOnItsSideOfTheLimit) {
   EXPECT_TRUE(parse_requirement("recall>=100%").is_met_by(1));
   EXPECT_FALSE(parse_requirement("bias<1ms").is_met_by(-2)) << "its size counts";
   EXPECT_TRUE(parse_requirement("bias<1ms").is_met_by(-0.5));
+}
+
+TEST(Requirement, AToleranceOfTheTaskBecomesASpread) {
+  const auto all = parse_requirements({"5mm at 2m/s", "amd<1ms"});
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_STREQ(all[0].metric->id, "exposure_spread_ms");
+  EXPECT_DOUBLE_EQ(all[0].limit, 2.5);
+  EXPECT_EQ(all[0].text, "exposure_spread<=2.5ms");
+  EXPECT_EQ(all[0].tolerance, "5mm at 2m/s");
+  EXPECT_STREQ(all[1].metric->id, "seed_precision");
+  EXPECT_DOUBLE_EQ(all[1].limit, 0.99);
+  EXPECT_EQ(exposure_ms_of(all), std::nullopt);
+}
+
+TEST(Requirement, TheBlurOfAnExposureIsPartOfTheTolerance) {
+  const auto all = parse_requirements({"1 cm at 36 km/h exposed 250us"});
+  EXPECT_NEAR(all.front().limit, 0.75, 1e-12) << "10 mm at 10 m/s are 1 ms";
+  EXPECT_EQ(exposure_ms_of(all), 0.25);
+  EXPECT_NEAR(parse_tolerance("0.5m at 100mm/s").front().limit, 5000, 1e-9);
+}
+
+TEST(Requirement, RefusesATolerancePerhapsMeantOtherwise) {
+  EXPECT_THAT(refusal("5mm"), HasSubstr("with its speed, as in '5mm at 2m/s'"));
+  for (const char* text : {"5mm at ", "5 at 2m/s", "5mm at 2", "mm at 2m/s", "5mm at 2m/s exposed",
+                           "5mm at 0m/s", "5mm at 2m/s exposed 3", "0mm at 2m/s"}) {
+    EXPECT_THAT(refusal(text), HasSubstr("LENGTH at SPEED")) << text;
+  }
+  EXPECT_THAT(refusal("5mm at 2m/s exposed 1ms twice"), HasSubstr("nothing behind"));
+  EXPECT_THAT(refusal("5mm at 2m/s exposed 3ms"), HasSubstr("an exposure below 2.5 ms"));
+  EXPECT_THROW((void)exposure_ms_of(
+                   parse_requirements({"5mm at 1m/s exposed 1ms", "5mm at 1m/s exposed 2ms"})),
+               scenarios::InputError);
 }
 
 TEST(Requirement, HasAMargin) {

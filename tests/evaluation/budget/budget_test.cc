@@ -71,15 +71,31 @@ void expect_equal_parts(const ErrorParts& a, const ErrorParts& b) {
   }
 }
 
-// Polls of the cameras' clocks, which the pipeline does not use, give an ideal delivery captures of
-// its own; without them it shares those of the real one.
+// An error of the delays' calibration gives an ideal delivery captures of its own, here one below a
+// nanosecond; without it the delivery shares those of the real one.
 TEST(Budget, SharedCapturesGiveTheSameNumbers) {
   const scenarios::Pipeline pipeline = {"both", "yoon2021_both", "regression_30", "yoon2021"};
-  const Budget shared = budget_of(small_world("/cameras/clock_poll/interval_ms", "0"), pipeline);
-  const Budget apart = budget_of(small_world("/cameras/clock_poll/interval_ms", "100"), pipeline);
+  const char* const error = "/cameras/calibration/delay_error_sigma_ms";
+  const Budget shared = budget_of(small_world(error, "0"), pipeline);
+  const Budget apart = budget_of(small_world(error, "1e-9"), pipeline);
   expect_equal_parts(shared.amd_ms, apart.amd_ms);
   expect_equal_parts(shared.absolute_error_ms, apart.absolute_error_ms);
   expect_equal_parts(shared.physical_ms, apart.physical_ms);
+}
+
+// A request that takes 1 ms longer than the reply puts each poll half of that too early.
+TEST(Budget, PollsAreAStageOfWhatUsesThem) {
+  scenarios::Scenario scenario = small_world("/cameras/clock_poll/interval_ms", "100");
+  scenario.cameras.clock_poll.request_ms = 1.2;
+  scenario.cameras.clock_poll.reply_ms = 0.2;
+  const std::vector<Budget> budgets =
+      budgets_of(scenario, {{"polls", "oracle", "two_way_poll", "yoon2021"},
+                            {"arrivals", "oracle", "regression_30", "yoon2021"}});
+  EXPECT_EQ(budget_stages(budgets[0]).size(), kCommonStages + 1);
+  EXPECT_NEAR(stage_mean(budgets[0].absolute_error_ms, BudgetStage::kPolls), 0.5, 0.1);
+  EXPECT_NEAR(stage_mean(budgets[0].absolute_error_ms, BudgetStage::kUsbDelivery), 0, 1e-6);
+  EXPECT_EQ(budget_stages(budgets[1]).size(), kCommonStages);
+  EXPECT_EQ(stage_mean(budgets[1].absolute_error_ms, BudgetStage::kPolls), 0);
 }
 
 // Two draw loads of their own and share ideal host clocks, the third is their world's own oracle.

@@ -91,6 +91,12 @@ TEST(SlaveShutter, FollowsPulsesAtTheModeRate) {
             (std::vector<std::int64_t>{0, 1, 2, 3}));
 }
 
+// No two exposures of a row overlap.
+TEST(SlaveShutter, AnExposureBeyondThePeriodMissesPulses) {
+  EXPECT_EQ(answered(settings_of(ShutterMode::kSlave, kModePeriod90, 12), kModePeriod90, 8),
+            (std::vector<std::int64_t>{0, 2, 4, 6}));
+}
+
 TEST(SlaveShutter, RunsFreeWithoutPulsesAndIsTakenBack) {
   const double period_ns = 10e6;
   Shutter shutter(settings_of(ShutterMode::kSlave, period_ns), TrueTime{});
@@ -153,6 +159,13 @@ TEST(Shutter, ANewExposureTimeCountsFromTheNextExposureOn) {
   ASSERT_EQ(shutter.on_pulse(at_ms(0), 0)->end, at_ms(4));
   shutter.set_exposure(from_ms(6));
   EXPECT_EQ(shutter.on_pulse(at_ms(30), 1)->end, at_ms(36));
+}
+
+TEST(FreeRunningShutter, AnExposureBeyondThePeriodTakesTwo) {
+  Shutter shutter(settings_of(ShutterMode::kFreeRunning, kModePeriod90, 12), TrueTime{});
+  const TrueTime first = shutter.next_timer();
+  ASSERT_TRUE(shutter.on_timer(first));
+  EXPECT_NEAR(to_ms(shutter.next_timer() - first), 2e3 / 90, 1e-6);
 }
 
 TEST(FreeRunningShutter, KeepsItsOwnRateWithoutAccumulatingRoundingErrors) {
