@@ -118,10 +118,11 @@ void RunArchive::open(const std::string& folder) {
   folder_ = std::make_unique<reports::OutputFolder>(folder, reports::clock_archive_files());
 }
 
-bool RunArchive::write(const evaluation::Results& results, const scenarios::Scenario& scenario) {
+bool RunArchive::write(const evaluation::Results& results, const scenarios::Scenario& scenario,
+                       const reports::ResultsAnswer* answer) {
   if (!folder_) return false;
   provenance_.finished = std::chrono::system_clock::now();
-  reports::write_archive(*folder_, results, scenario, provenance_);
+  reports::write_archive(*folder_, results, scenario, provenance_, answer);
   return true;
 }
 

@@ -32,7 +32,9 @@ class RunArchive {
   // Empty: no archive. Throws reports::OutputError.
   void open(const std::string& folder);
   // False if there is no folder. Throws reports::OutputError.
-  bool write(const evaluation::Results& results, const scenarios::Scenario& scenario);
+  // `answer` as of reports::write_archive().
+  bool write(const evaluation::Results& results, const scenarios::Scenario& scenario,
+             const reports::ResultsAnswer* answer = nullptr);
   bool write(const evaluation::ClockResults& results, const scenarios::Scenario& scenario);
 
  private:

@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/clock_causes.h"
 #include "app/interrupt.h"
 #include "app/results.h"
 #include "cli/command.h"
@@ -61,13 +62,20 @@ int clocks(ClocksOptions options) {
   evaluation::check_clock_options(scenario, options.clocks);
   print_warnings(scenarios::warnings(scenario));
   archive.open(options.output);
-  const auto results = watched<evaluation::ClockResults>([&](const evaluation::Progress& progress) {
-    evaluation::ClockOptions run = options.clocks;
-    run.cancel = &app::InterruptHandler::flag();
+  evaluation::ClockOptions run = options.clocks;
+  run.cancel = &app::InterruptHandler::flag();
+  auto results = watched<evaluation::ClockResults>([&](const evaluation::Progress& progress) {
     return std::make_optional(evaluation::evaluate_clocks(
         scenario, [&] { return app::simulated_clocks(scenario); }, run, progress));
   });
   if (!results) return kInterrupted;
+  auto causes = watched<evaluation::ClockCauses>(
+      [&](const evaluation::Progress& progress) {
+        return std::make_optional(app::causes_of(*results, scenario, run, progress));
+      },
+      {.unit = "cause"});
+  if (!causes) return kInterrupted;
+  results->causes = std::move(*causes);
   print_warnings(results->results.warnings);
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
   print_result(app::clock_text(*results, scenario, options.format));

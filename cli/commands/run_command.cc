@@ -178,7 +178,8 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
 std::optional<reports::ResultsAnswer> answer_of(const evaluation::Results& results,
                                                 const scenarios::Scenario& scenario,
                                                 const RunOptions& options) {
-  if (options.format == "csv" || options.format == "tidy") return reports::ResultsAnswer{};
+  const bool shows_none = options.format == "csv" || options.format == "tidy";
+  if (shows_none && options.output.empty()) return reports::ResultsAnswer{};
   return watched<reports::ResultsAnswer>([&](const evaluation::Progress& progress) {
     return app::run_answer(results, scenario,
                            {.levers = !options.no_levers, .jobs = options.evaluation.jobs},
@@ -203,8 +204,11 @@ int run(RunOptions options) {
   if (!results) return kInterrupted;
   app::rank_by(options.rank_by, *results);
   print_warnings(results->warnings);
-  if (archive.write(*results, scenario)) print_note("results written to " + options.output);
   const std::optional<reports::ResultsAnswer> answer = answer_of(*results, scenario, options);
+  // Whoever interrupts the search for levers has the results all the same.
+  if (archive.write(*results, scenario, answer ? &*answer : nullptr)) {
+    print_note("results written to " + options.output);
+  }
   if (!answer) return kInterrupted;
   print_result(app::results_text(*results, scenario, options.format, options.detail(), *answer));
   return kOk;

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/clock_run/clock_cause.h"
 #include "evaluation/clock_run/clock_score.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/scoring/results.h"
@@ -51,6 +52,7 @@ struct ClockResults {
   Results results;                        // of ResultKind::kClockRuns
   std::vector<StabilityCurves> curves{};  // by row
   std::vector<ClockReadings> readings{};  // by row, of the first seed
+  ClockCauses causes{};                   // of the best row, if somebody asked (clock_causes.h)
 };
 
 using ClockSourceFactory = std::function<std::unique_ptr<ClockSource>()>;

@@ -145,6 +145,9 @@ void ClockScorer::watch_loss(Nanoseconds since_loss, std::span<const double> err
   if (spread_ms > spread_max_ms_) last_apart_ = since_loss - kMasterLostFor + kReadingInterval;
 }
 
+// A spread is below a bound for good only if at least this part of the run saw it there.
+constexpr std::int64_t kLeastRest = 10;
+
 ClockScore ClockScorer::finish(std::uint64_t messages) {
   ClockScore score;
   MetricValues<double>& values = score.values;
@@ -157,8 +160,9 @@ ClockScore ClockScorer::finish(std::uint64_t messages) {
   score.host_errors_ms = errors_.means_ms();
   const auto below_s = [&](std::size_t bound) {
     if (!last_above_[bound]) return 0.0;
-    if (*last_above_[bound] == last_) return kNan;
-    return exact_seconds(*last_above_[bound] + kReadingInterval - TrueTime{});
+    const Nanoseconds since_start = *last_above_[bound] + kReadingInterval - TrueTime{};
+    return span_.duration - since_start < span_.duration / kLeastRest ? kNan
+                                                                      : exact_seconds(since_start);
   };
   values.below_1_ms_s = below_s(0);
   values.below_0_1_ms_s = below_s(1);

@@ -22,7 +22,7 @@ using scenarios::Override;
 using scenarios::Pipeline;
 using scenarios::Scenario;
 
-constexpr std::size_t kMostVerifiedChanges = 4;
+constexpr std::size_t kMostVerifiedChanges = 3;
 constexpr std::size_t kSecondRound = 3;  // of a stage
 
 // Something to try: a pipeline in the world that `sets` make.
@@ -137,6 +137,7 @@ class LeverSearch {
     screen_algorithms(*found);
     screen_changes(*found);
     verify();
+    if (caller_) caller_(all_, all_);
     return std::move(levers_);
   }
 
@@ -279,15 +280,22 @@ class LeverSearch {
     return trials;
   }
 
-  // The best of each stage, the calibrated apart, and the first two together.
+  // The best of each stage, a calibrated one if it is better than all without, and the first two
+  // together.
   void keep_best_of_each(const Pipeline& best, std::vector<Screened> promising) {
-    std::set<std::string> kept;
+    std::map<PipelineStage, Value> kept;
     for (Screened& each : promising) {
-      const std::string stage = (each.trial.calibrates ? "calibrated " : "") +
-                                std::string(stage_that_differs(each.trial.pipeline, best).name);
-      if (kept.insert(stage).second) to_verify_.push_back(std::move(each.trial));
+      if (each.trial.calibrates) continue;
+      const PipelineStage stage = stage_that_differs(each.trial.pipeline, best).id;
+      if (kept.emplace(stage, each.value).second) to_verify_.push_back(std::move(each.trial));
     }
     add_both(best);
+    const Value& uncalibrated = kept.emplace(PipelineStage::kDeviceTime, before_).first->second;
+    const auto calibrated =
+        std::ranges::find_if(promising, [](const Screened& each) { return each.trial.calibrates; });
+    if (calibrated != promising.end() && is_promising(calibrated->value, uncalibrated)) {
+      to_verify_.push_back(std::move(calibrated->trial));
+    }
   }
 
   // The best host_sync and the best uncalibrated device_time together.
@@ -370,14 +378,12 @@ class LeverSearch {
     std::vector<double> before = ranked_series(best_, ranked_by_).values;
     before.resize(levers_.seeds);
     std::vector<Lever> levers;
-    std::set<std::size_t> calibrated;
     std::vector<ComparisonTask> tasks;
     for (Trial& trial : to_verify_) {
       const std::optional<Row> row = row_of(trial, options, /*keeps_name=*/false);
       if (!row || !is_comparable(*row) || !is_sound(*row, best_)) continue;
       const Series& after = ranked_series(*row, ranked_by_);
       tasks.push_back({pair_up(before, after.values), {}});
-      if (trial.calibrates) calibrated.insert(levers.size());
       levers.push_back({.what = trial.what,
                         .pipeline = trial.pipeline.name,
                         .sets = trial.sets,
@@ -388,22 +394,7 @@ class LeverSearch {
     }
     const std::vector<PairedComparison> effects = compare_together(tasks);
     for (std::size_t i = 0; i < levers.size(); ++i) levers[i].effect = effects[i];
-    drop_vain_calibration(calibrated, levers);
     keep_effective(std::move(levers));
-  }
-
-  // A measured calibration that gives no more than an algorithm without one.
-  static void drop_vain_calibration(const std::set<std::size_t>& calibrated,
-                                    std::vector<Lever>& levers) {
-    for (auto at = calibrated.rbegin(); at != calibrated.rend(); ++at) {
-      const double to = levers[*at].to;
-      std::size_t i = 0;
-      const bool is_vain = std::ranges::any_of(levers, [&](const Lever& other) {
-        return !calibrated.contains(i++) && other.sets.empty() &&
-               other.to <= to * (1 + kSmallestGain);
-      });
-      if (is_vain) levers.erase(levers.begin() + static_cast<std::ptrdiff_t>(*at));
-    }
   }
 
   void keep_effective(std::vector<Lever> levers) {

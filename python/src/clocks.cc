@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/clock_causes.h"
 #include "app/interrupt.h"
 #include "app/results.h"
 #include "evaluation/clock_run/clock_evaluation.h"
@@ -48,6 +49,10 @@ std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t du
     return evaluation::evaluate_clocks(
         run->scenario, [&] { return app::simulated_clocks(run->scenario); }, options, progress);
   });
+  run->results.causes =
+      watched<evaluation::ClockCauses>(on_progress, [&](const evaluation::Progress& progress) {
+        return app::causes_of(run->results, run->scenario, options, progress);
+      });
   run->provenance.finished = std::chrono::system_clock::now();
   run->notes = scenarios::warnings(run->scenario);
   const std::vector<std::string>& more = run->results.results.warnings;
@@ -68,7 +73,7 @@ std::string series_csv(const ClockRun& run) {
 
 std::string clock_html(const ClockRun& run) {
   const reports::Document document = reports::clock_document(run.results, run.scenario.summary);
-  return html(reports::clock_answer(run.results.results)) + html(document.blocks);
+  return html(reports::clock_answer(run.results)) + html(document.blocks);
 }
 
 }  // namespace

@@ -100,16 +100,18 @@ std::string manifest_json(const Provenance& provenance, const evaluation::Result
 
 void write_archive_files(OutputFolder& output, const std::string& prefix,
                          const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const Provenance& provenance) {
+                         const Provenance& provenance, const ResultsAnswer* answer) {
   output.file(prefix + kManifest) << manifest_json(provenance, results, scenario);
-  output.file(prefix + "results.json") << json(results);
+  output.file(prefix + "results.json")
+      << (answer == nullptr ? json(results) : json(results, *answer));
   write_frames_csv(results, output.file(prefix + "frames.csv"));
   write_hosts_csv(results, output.file(prefix + "hosts.csv"));
 }
 
 void write_archive(OutputFolder& output, const evaluation::Results& results,
-                   const scenarios::Scenario& scenario, const Provenance& provenance) {
-  write_archive_files(output, "", results, scenario, provenance);
+                   const scenarios::Scenario& scenario, const Provenance& provenance,
+                   const ResultsAnswer* answer) {
+  write_archive_files(output, "", results, scenario, provenance, answer);
   output.publish();
 }
 

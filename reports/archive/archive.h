@@ -25,6 +25,7 @@
 #include "evaluation/clock_run/clock_score.h"
 #include "evaluation/scoring/results.h"
 #include "recording/version.h"
+#include "reports/results/results_answer.h"
 #include "reports/text/json_node.h"
 #include "reports/text/output_file.h"
 #include "scenarios/scenario.h"
@@ -50,15 +51,17 @@ std::string manifest_json(const Provenance& provenance, const Json& more);
 std::string manifest_json(const Provenance& provenance, const evaluation::Results& results,
                           const scenarios::Scenario& scenario);
 
-// Writes and publishes. After an OutputError nothing is left.
+// Writes and publishes. After an OutputError nothing is left. `answer`: of the results; null: it is
+// computed, without levers.
 void write_archive(OutputFolder& output, const evaluation::Results& results,
-                   const scenarios::Scenario& scenario, const Provenance& provenance);
+                   const scenarios::Scenario& scenario, const Provenance& provenance,
+                   const ResultsAnswer* answer = nullptr);
 
 // Writes the files of an archive under names that begin with `prefix` ("45fps/": a folder in the
 // folder), for a folder of more than one; publishes nothing.
 void write_archive_files(OutputFolder& output, const std::string& prefix,
                          const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const Provenance& provenance);
+                         const Provenance& provenance, const ResultsAnswer* answer = nullptr);
 
 // What the results of a file are of: the member, which only files of clock runs have.
 inline constexpr const char* kClockRunsName = "clocks";

@@ -1,6 +1,8 @@
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -14,9 +16,12 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Answer;
+using evaluation::ClockCause;
+using evaluation::ClockCauses;
 using evaluation::Row;
 
 constexpr double kMostlyConstant = 0.5;  // of the largest time error
+constexpr std::size_t kNamedCauses = 3;
 
 std::string closest_sentence(const Answer& answer) {
   const Row& best = *answer.best;
@@ -51,18 +56,40 @@ std::string in_sync_sentence(const Row& row) {
       time_text(row.max_te_ms.median));
 }
 
+// Where nobody asked for causes: what the error looks like, which is no cause.
 std::string kind_of_error_sentence(const Row& row) {
   const double share = row.constant_te_ms.median / row.max_te_ms.median;
   if (!std::isfinite(share)) return "";
   return share > kMostlyConstant
-             ? fmt::format(
-                   "What limits it: a constant error of {}, as unequal paths there and "
-                   "back make it, which no averaging removes.",
-                   time_text(row.constant_te_ms.median))
-             : fmt::format(
-                   "What limits it: noise and drift, a range of {} in a host; the constant "
-                   "part is {}.",
-                   time_text(row.dynamic_te_ms.median), time_text(row.constant_te_ms.median));
+             ? fmt::format("Mostly constant, {} in a host: unequal paths there and back look so.",
+                           time_text(row.constant_te_ms.median))
+             : fmt::format("Mostly moving, by up to {} in a host; the constant part is {}.",
+                           time_text(row.dynamic_te_ms.median),
+                           time_text(row.constant_te_ms.median));
+}
+
+std::string cause_sentence(const ClockCause& cause) {
+  const auto saved = [](double from, double to) { return from > 0 ? 1 - to / from : 0; };
+  const bool is_spread = saved(cause.spread_from_ms, cause.spread_to_ms) >=
+                         saved(cause.largest_from_ms, cause.largest_to_ms);
+  return fmt::format(
+      "Without {}: {}.", cause.what,
+      is_spread ? "mean spread " + time_change_text(cause.spread_from_ms, cause.spread_to_ms)
+                : "largest error of a host " +
+                      time_change_text(cause.largest_from_ms, cause.largest_to_ms));
+}
+
+// What limits it, by runs without each cause.
+std::string causes_text(const ClockCauses& causes) {
+  if (causes.tried.empty()) return "";
+  if (causes.found.empty()) {
+    return fmt::format("Nothing alone, by 20 % or more: {}.", fmt::join(causes.tried, ", "));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kNamedCauses, causes.found.size()); ++i) {
+    text += (text.empty() ? "" : " ") + cause_sentence(causes.found[i]);
+  }
+  return text;
 }
 
 std::string without_master_sentence(const Row& row) {
@@ -77,11 +104,16 @@ std::string without_master_sentence(const Row& row) {
 
 }  // namespace
 
-AnswerText clock_answer(const evaluation::Results& results) {
-  return clock_answer(results, evaluation::answer_of(results));
+AnswerText clock_answer(const evaluation::ClockResults& results) {
+  return clock_answer(results.results, evaluation::answer_of(results.results), results.causes);
 }
 
-AnswerText clock_answer(const evaluation::Results& results, const Answer& answer) {
+AnswerText clock_answer(const evaluation::Results& results) {
+  return clock_answer(results, evaluation::answer_of(results), {});
+}
+
+AnswerText clock_answer(const evaluation::Results& results, const Answer& answer,
+                        const ClockCauses& causes) {
   if (answer.best == nullptr) {
     AnswerText none{.lead = "No host_sync that a rig can run has a result here."};
     none.add("Failed", failed_text(answer));
@@ -91,7 +123,8 @@ AnswerText clock_answer(const evaluation::Results& results, const Answer& answer
   text.add("Others", distance_text(results, answer));
   text.add("Failed", failed_text(answer));
   text.add("In sync?", in_sync_sentence(*answer.best));
-  text.add("Limit", kind_of_error_sentence(*answer.best));
+  text.add("Causes", causes_text(causes));
+  if (causes.tried.empty()) text.add("Error", kind_of_error_sentence(*answer.best));
   text.add("Holdover", without_master_sentence(*answer.best));
   text.add("Cost", fmt::format("It sends {} packets per second.",
                                number_text(answer.best->packets_per_s.median)));

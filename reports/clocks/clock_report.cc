@@ -117,7 +117,7 @@ ClockResults clock_results_of(const Archive& archive) {
 
 Document clock_document(const ClockResults& results, const std::string& summary) {
   Document document{.title = results_title(results.results),
-                    .head = paragraphs(clock_answer(results.results))};
+                    .head = paragraphs(clock_answer(results))};
   const std::vector<std::string> head = results_head(results.results, summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
   std::vector<Block>& blocks = document.blocks;
@@ -170,6 +170,22 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
   return all;
 }
 
+Json causes_json(const evaluation::ClockCauses& causes) {
+  if (causes.tried.empty()) return nullptr;
+  Json all = Json::array();
+  for (const evaluation::ClockCause& cause : causes.found) {
+    Json sets = Json::object();
+    for (const scenarios::Override& set : cause.sets) sets[set.pointer] = set.value;
+    all.push_back({{"what", cause.what},
+                   {"sets", std::move(sets)},
+                   {"spread_from_ms", cause.spread_from_ms},
+                   {"spread_to_ms", cause.spread_to_ms},
+                   {"largest_from_ms", cause.largest_from_ms},
+                   {"largest_to_ms", cause.largest_to_ms}});
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string clock_json(const ClockResults& results) {
@@ -191,7 +207,8 @@ std::string clock_json(const ClockResults& results) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
   }
   const evaluation::Answer answer = evaluation::answer_of(of);
-  root["answer"] = answer_with_fields(answer, clock_answer(of, answer), nullptr);
+  root["answer"] = answer_with_fields(answer, clock_answer(of, answer, results.causes), nullptr);
+  root["answer"]["causes"] = causes_json(results.causes);
   root["performance"] = performance_json(of.performance);
   return file_text(root);
 }

@@ -42,15 +42,20 @@ namespace simbench::reports {
 evaluation::ClockResults clock_results_of(const Archive& archive);
 
 // Which host_sync keeps the hosts' clocks closest together and by how much, from when on they are
-// in sync, whether the rest is constant or moves, what happens without the master, what it costs in
+// in sync, what causes the rest (or, where nobody asked, whether it is constant or moves), what
+// happens without the master, what it costs in
 // packets, and what is uncertain. Ranked by the mean spread in time (evaluation/answer/answer.h).
 // `results`: of ResultKind::kClockRuns.
+AnswerText clock_answer(const evaluation::ClockResults& results);
 AnswerText clock_answer(const evaluation::Results& results);
-AnswerText clock_answer(const evaluation::Results& results, const evaluation::Answer& answer);
+AnswerText clock_answer(const evaluation::Results& results, const evaluation::Answer& answer,
+                        const evaluation::ClockCauses& causes);
 
 // Its head begins with the answer.
 Document clock_document(const evaluation::ClockResults& results, const std::string& summary);
 
+// Its answer has "causes": [{"what", "sets", "spread_from_ms", "spread_to_ms", "largest_from_ms",
+// "largest_to_ms"}], null if nobody asked.
 std::string clock_json(const evaluation::ClockResults& results);
 
 // pipeline,measure,tau_s,value: the metrics without a tau (medians over the seeds), then the

@@ -7,7 +7,7 @@
 // where the rest is. The first of many pipelines are shown, in order of the answer's metric for
 // leaderboards, else in the scenario's order.
 //
-//   const AnswerText answer = results_answer(all_results, nullptr);
+//   const AnswerText answer = results_answer(all_results).text;
 //   std::cout << plain(summary_document(all_results, {.summary = scenario.summary}, answer));
 #pragma once
 

@@ -21,6 +21,7 @@ std::string results_without_performance(const scenarios::Scenario& scenario,
       evaluation::evaluate(scenario, [&] { return sim::make_simulation(scenario); }, options, {});
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(reports::json(results));
   for (const char* varies : {"performance", "version", "commit"}) json.erase(varies);
+  for (const char* m : {"levers", "levers_seeds"}) json["answer"].erase(m);
   return json.dump();
 }
 

@@ -34,7 +34,8 @@ class JsonMessages : public ProgramTest {
 };
 
 TEST_F(JsonMessages, ARunStartsProgressesAndEnds) {
-  const ProgramResult result = run(small_run({"--pipelines", "free_running,oracle"}));
+  const ProgramResult result =
+      run(small_run({"--pipelines", "free_running,oracle", "--no-levers"}));
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(json::parse(result.out).contains("schema_version"));
   const std::vector<json> seen = events(result);

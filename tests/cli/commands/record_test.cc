@@ -46,8 +46,8 @@ class RecordCommand : public ProgramTest {
   // Holds the replay of a recording to the run that it records, byte for byte.
   void expect_replay_equals_run(const std::vector<std::string>& choice) const {
     SCOPED_TRACE(choice.at(1));
-    std::vector<std::string> run_it = {"run", "--seeds",  "1",   "--first-seed",
-                                       "5",   "--format", "json"};
+    std::vector<std::string> run_it = {"run", "--seeds",  "1",    "--first-seed",
+                                       "5",   "--format", "json", "--no-levers"};
     std::vector<std::string> record_it = {"record", "--seed", "5", "-o", "rec"};
     run_it.insert(run_it.end(), choice.begin(), choice.end());
     record_it.insert(record_it.end(), choice.begin(), choice.end());

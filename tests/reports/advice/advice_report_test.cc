@@ -39,8 +39,10 @@ OptionAdvice option(std::int64_t hosts, double price_eur, const PipelineAdvice& 
   option.option.hosts = hosts;
   option.option.cameras_per_host = 4;
   option.option.host = named_part("small_pc", "A small computer");
-  option.option.network_switch = named_part("a_switch", "A switch");
-  option.option.clock = named_part("pps_wires", "Wires");
+  if (hosts > 1) {
+    option.option.network_switch = named_part("a_switch", "A switch");
+    option.option.clock = named_part("pps_wires", "Wires");
+  }
   option.option.price = {price_eur, 2 * price_eur};
   option.pipelines = {best};
   option.is_settled = is_settled;

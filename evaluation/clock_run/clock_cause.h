@@ -1,0 +1,32 @@
+// What a cause of the clocks' errors is; clock_causes.h finds them.
+//
+//   for (const ClockCause& cause : results.causes.found) print(cause.what, cause.effect());
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "evaluation/statistics/statistics.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+
+struct ClockCause {
+  std::string what;                       // "the steps of a clock"
+  std::vector<scenarios::Override> sets;  // what takes it away
+  // Means over the seeds, with and without it.
+  double spread_from_ms = kNan;
+  double spread_to_ms = kNan;
+  double largest_from_ms = kNan;
+  double largest_to_ms = kNan;
+
+  // How much smaller the more affected of the two is without it, as a share.
+  double effect() const;
+};
+
+struct ClockCauses {
+  std::vector<std::string> tried{};  // empty: nothing was asked
+  std::vector<ClockCause> found{};   // the one with the largest effect first
+};
+
+}  // namespace simbench::evaluation
