@@ -31,6 +31,8 @@ bool is_relative(const DeviceTimeEntry* entry) {
   return entry != nullptr && entry->make(check_parameters(entry->info.parameters, {}))->relative();
 }
 
+constexpr const char* kNoPureSet = "no gathered set is of one pulse";
+
 // Whether sets have a part in what is ranked.
 bool is_of_sets(RankedBy ranked_by) {
   return ranked_by != RankedBy::kClockSpread && ranked_by != RankedBy::kExposureSpread &&
@@ -50,9 +52,23 @@ bool has_value(const Row& row, RankedBy ranked_by) {
   return !std::isnan(ranked_series(row, ranked_by).median);
 }
 
+// Whether no set is whole although the clocks are right: the exposures or the delays of a pulse lie
+// further apart than gathering takes for one pulse.
+bool is_window_too_small(const Row& row) {
+  constexpr double kFarBelow = 0.25;
+  return row.verified() && row.sets.pure == 0 && row.margin_ms < 0 &&
+         row.host_error_ms.median < kFarBelow * row.amd_ms.median;
+}
+
 std::string failure_of(const Row& row, RankedBy ranked_by) {
   if (!has_value(row, ranked_by) && !row.notes.empty()) return row.notes.front();
   std::string failure = failure_text(outcome_of(row), ranked_by);
+  if (failure == kNoPureSet && is_window_too_small(row)) {
+    failure += fmt::format(
+        ": its stamps of a pulse lie {:.3g} ms apart, beyond gathering's interval "
+        "(/evaluation/gathering_interval_periods)",
+        row.amd_ms.median);
+  }
   if (!failure.empty() || has_value(row, ranked_by)) return failure;
   return fmt::format("it has no {}", ranked_metric(ranked_by).title);
 }
@@ -111,7 +127,7 @@ std::string failure_text(const Outcome& outcome, RankedBy ranked_by) {
   if (!is_of_sets(ranked_by)) return "";
   if (outcome.complete_pulses == 0) return "no pulse was delivered by all cameras";
   if (outcome.sets == 0) return "no complete set was gathered";
-  if (outcome.pure_sets == 0) return "no gathered set is of one pulse";
+  if (outcome.pure_sets == 0) return kNoPureSet;
   return "";
 }
 

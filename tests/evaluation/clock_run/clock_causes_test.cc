@@ -30,7 +30,7 @@ ClockCauses causes_in(std::vector<scenarios::Override> sets) {
       {.duration_s = 1200, .from_s = 300, .seeds = 2, .jobs = 1}, nullptr);
 }
 
-std::vector<std::string> names_of(const ClockCauses& causes) {
+std::vector<std::string> found_in(const ClockCauses& causes) {
   std::vector<std::string> names;
   for (const ClockCause& cause : causes.found) names.push_back(cause.what);
   return names;
@@ -61,7 +61,7 @@ TEST(ClockCauses, WhatDidNotHappenIsNotAsked) {
   for (const char* absent :
        {"the step of a clock", "the leap second", "hosts and links that stopped"}) {
     EXPECT_THAT(causes.tried, Not(Contains(absent)));
-    EXPECT_THAT(names_of(causes), Not(Contains(absent)));
+    EXPECT_THAT(found_in(causes), Not(Contains(absent)));
   }
 }
 

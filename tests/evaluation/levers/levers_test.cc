@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-std::unique_ptr<RecordingSource> world_of(const Scenario& scenario) {
+std::unique_ptr<RecordingSource> lever_world(const Scenario& scenario) {
   return sim::make_simulation(scenario);
 }
 
-Results run(const Scenario& scenario, const std::vector<std::string>& pipelines = {}) {
+Results lever_run(const Scenario& scenario, const std::vector<std::string>& pipelines = {}) {
   return evaluate(
-      scenario, [&] { return world_of(scenario); },
+      scenario, [&] { return lever_world(scenario); },
       {.seeds = 8, .jobs = 2, .pipelines = pipelines, .share_captures = true}, nullptr);
 }
 
@@ -53,10 +54,10 @@ struct Found {
 };
 
 Found find(const Scenario& scenario) {
-  Found found{.scenario = scenario, .results = run(scenario), .levers = {}};
-  found.levers =
-      find_levers(scenario, found.results, *best_of(found.results), world_of, {.jobs = 2}, nullptr)
-          .value();
+  Found found{.scenario = scenario, .results = lever_run(scenario), .levers = {}};
+  found.levers = find_levers(scenario, found.results, *best_of(found.results), lever_world,
+                             {.jobs = 2}, nullptr)
+                     .value();
   return found;
 }
 
@@ -76,7 +77,7 @@ Row run_of(const Lever& lever, const Found& found) {
   }
   const Scenario changed =
       scenarios::load_scenario_text(found.scenario.resolved_json(), found.scenario.name, sets);
-  return run(changed, {lever.pipeline}).rows.front();
+  return lever_run(changed, {lever.pipeline}).rows.front();
 }
 
 // The paper's method where a better one costs nothing.
@@ -122,9 +123,9 @@ TEST(Levers, NothingHelpsWhereNothingIsWrong) {
 
 TEST(Levers, LargeWorldsAreNotSearched) {
   const Scenario scenario = small({});
-  const Results results = run(scenario);
+  const Results results = lever_run(scenario);
   EXPECT_FALSE(
-      find_levers(scenario, results, *best_of(results), world_of, {.most_events = 10}, nullptr)
+      find_levers(scenario, results, *best_of(results), lever_world, {.most_events = 10}, nullptr)
           .has_value());
 }
 
