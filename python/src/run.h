@@ -37,7 +37,7 @@ struct Run {
   std::optional<scenarios::Scenario> scenario{};    // nothing: unknown, of a results.json alone
   std::shared_ptr<app::RecordedRun> recorded{};     // of a recording folder
   std::optional<reports::Provenance> provenance{};  // of a run that can be saved
-  std::optional<reports::ResultsAnswer> answer{};      // once it was asked for
+  std::optional<reports::ResultsAnswer> answer{};   // once it was asked for
   std::vector<std::string> notes{};
 
   const evaluation::Results& results() const { return archive.results; }

@@ -55,7 +55,7 @@ std::string verdict(const OptionAdvice& option) {
 }
 
 // The parts that the option has.
-std::vector<const scenarios::Part*> parts_of(const RigOption& option) {
+std::vector<const scenarios::Part*> parts_in(const RigOption& option) {
   std::vector<const scenarios::Part*> parts;
   if (option.camera.is_host) parts.push_back(&option.camera);
   for (const scenarios::Part* part :
@@ -66,7 +66,7 @@ std::vector<const scenarios::Part*> parts_of(const RigOption& option) {
 }
 
 std::vector<std::string> part_names(const RigOption& option) {
-  return collected(parts_of(option), &scenarios::Part::part);
+  return collected(parts_in(option), &scenarios::Part::part);
 }
 
 Table options_table(const Advice& advice) {
@@ -133,7 +133,7 @@ Block assumptions_block(const Advice& advice) {
   std::vector<std::string> seen;
   for (const OptionAdvice& each : advice.options) {
     const RigOption& option = each.option;
-    for (const scenarios::Part* part : parts_of(option)) {
+    for (const scenarios::Part* part : parts_in(option)) {
       if (std::ranges::count(seen, part->part) > 0) continue;
       seen.push_back(part->part);
       block.items.push_back(part_line(*part));
@@ -170,7 +170,7 @@ std::string nothing_meets(const Advice& advice) {
 }
 
 // What the tolerances of the task became; "" without any.
-std::string tolerance_text(const Advice& advice) {
+std::string need_text(const Advice& advice) {
   std::map<std::string, std::vector<std::string>> became;
   for (const Requirement& each : advice.request.requirements) {
     if (!each.tolerance.empty()) became[each.tolerance].push_back(each.text);
@@ -230,7 +230,7 @@ std::string price_class(const scenarios::PriceRange& price) {
 AnswerText advice_answer(const Advice& advice) {
   if (!advice.recommended) {
     AnswerText answer{.lead = nothing_meets(advice)};
-    answer.add("Need", tolerance_text(advice));
+    answer.add("Need", need_text(advice));
     return answer;
   }
   const OptionAdvice& option = advice.options[*advice.recommended];
@@ -241,7 +241,7 @@ AnswerText advice_answer(const Advice& advice) {
                         option.option.name(), requirements_text(advice), asked_rig_text(advice),
                         best.met, best.seeds, 100 * best.interval().low, 100 * best.interval().high,
                         best.pipeline.name)};
-  answer.add("Need", tolerance_text(advice));
+  answer.add("Need", need_text(advice));
   answer.add("Price",
              fmt::format("It is the cheapest that does with 95 %: price class {}, without cameras "
                          "and trigger.",
@@ -281,7 +281,7 @@ Json advice_json(const Advice& advice) {
   for (const Requirement& each : advice.request.requirements) {
     root["requirements"].push_back(each.text);
   }
-  root["tolerances"] = tolerance_text(advice);
+  root["tolerances"] = need_text(advice);
   if (advice.recommended) root["recommended"] = *advice.recommended;
   if (advice.fails_first) {
     root["fails_first"] = {{"metric", advice.fails_first->metric},
