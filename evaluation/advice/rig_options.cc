@@ -45,7 +45,7 @@ Part camera_of(const RigRequest& request) {
                                scenarios::shown_text(request.camera), fmt::join(known, ", ")));
 }
 
-bool is_steered(const Part& camera) { return !camera.capture_alignment.empty(); }
+bool steers(const Part& camera) { return !camera.capture_alignment.empty(); }
 
 // A sync mode and a mode of the camera that give the rate.
 struct FrameMode {
@@ -66,7 +66,7 @@ std::vector<double> rates_of(const Part& camera) {
   std::set<double> rates;
   for (const double mode_hz : mode_rates_hz(camera)) {
     rates.insert(mode_hz);
-    if (!is_steered(camera)) rates.insert(mode_hz / 2);
+    if (!steers(camera)) rates.insert(mode_hz / 2);
   }
   return {rates.begin(), rates.end()};
 }
@@ -82,11 +82,11 @@ std::optional<FrameMode> frame_mode(const Part& camera, double rate_hz) {
 [[noreturn]] void refuse_rate(const Part& camera, double rate_hz) {
   throw InputError(fmt::format("--rate: found {:g}, allowed {} (modes of the camera of {}{})",
                                rate_hz, fmt::join(rates_of(camera), ", "), camera.world,
-                               is_steered(camera) ? "" : ", and halves of them in genlock"));
+                               steers(camera) ? "" : ", and halves of them in genlock"));
 }
 
 std::vector<Override> frame_mode_sets(const Part& camera, double rate_hz) {
-  if (is_steered(camera)) {
+  if (steers(camera)) {
     if (std::ranges::count(rates_of(camera), rate_hz) == 0) refuse_rate(camera, rate_hz);
     return {{"/cameras/streams/0/mode_rate_hz", fmt::format("{}", rate_hz)},
             {"/trigger/rate_hz", fmt::format("{}", rate_hz)}};

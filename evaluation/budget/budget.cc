@@ -28,8 +28,8 @@ bool has_polls(const scenarios::Scenario& scenario, const scenarios::Pipeline& p
 }
 
 // The stages that one of the pipelines has.
-StageSet stages_of(const scenarios::Scenario& scenario,
-                   const std::vector<scenarios::Pipeline>& pipelines) {
+StageSet present_stages_of(const scenarios::Scenario& scenario,
+                           const std::vector<scenarios::Pipeline>& pipelines) {
   StageSet stages((std::size_t{1} << kCommonStages) - 1);
   for (const scenarios::Pipeline& pipeline : pipelines) {
     if (is_steered(pipeline)) stages = stages.with(BudgetStage::kGranularity);
@@ -241,7 +241,7 @@ std::string_view stage_name(const Budget& budget, BudgetStage stage) {
 
 std::size_t stage_sets(const scenarios::Scenario& scenario,
                        const std::vector<scenarios::Pipeline>& pipelines) {
-  return std::size_t{1} << std::popcount(stages_of(scenario, pipelines).bits());
+  return std::size_t{1} << std::popcount(present_stages_of(scenario, pipelines).bits());
 }
 
 std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
@@ -252,7 +252,7 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
   EvaluationOptions of_worlds = options;
   of_worlds.keep_pulses = false;
   of_worlds.share_captures = true;
-  const StageSet present = stages_of(scenario, pipelines);
+  const StageSet present = present_stages_of(scenario, pipelines);
   const std::uint64_t total = stage_sets(scenario, pipelines) * pipelines.size() * options.seeds;
   std::vector<WorldScores> scores(pipelines.size());
   std::uint64_t done_before = 0;

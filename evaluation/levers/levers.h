@@ -18,19 +18,19 @@
 //    is a lever of its own, and so is the best of host_sync and device_time together;
 //  - changes of the rig (rig_changes.h).
 //
-// First all are screened over seeds behind those of the results: algorithms at one, the best of each
-// stage and the changes at kScreeningLeverSeeds. The most promising ones then run over the seeds of
-// the results. Selection and verdict therefore have no seed in common, and
-// the verdicts are corrected for each other (compare_together()). A lever is listed if it is better
-// by this test and by at least kSmallestGain in the median, or if it finds pulses that were
-// missing, and makes neither the absolute error nor the hosts' clocks worse: a smaller AMD alone
-// can hide what differs.
+// First all are screened over seeds behind those of the results: algorithms at one, the best of
+// each stage and the changes at kScreeningLeverSeeds. The most promising ones then run over the
+// seeds of the results. Selection and verdict therefore have no seed in common, and the verdicts
+// are corrected for each other (compare_together()). A lever is listed if it is better by this test
+// and by at least kSmallestGain in the median, or if it finds pulses that were missing, and makes
+// neither the absolute error nor the hosts' clocks worse: a smaller AMD alone can hide what
+// differs.
 //
 // Not tried: pipelines of programs, and worlds that are too large (LeverOptions::most_events).
 //
 // Errors: what evaluate() throws for a world that was run already, nothing for a change that its
-// world forbids. Cost: some 80 runs of algorithms, 40 of variants and changes over kScreeningLeverSeeds seeds,
-// and at most kMostVerified runs as long as those of a row.
+// world forbids. Cost: some 80 runs of algorithms, 40 of variants and changes over
+// kScreeningLeverSeeds seeds, and at most kMostVerified runs as long as those of a row.
 //
 //   const std::optional<Levers> levers =
 //       find_levers(scenario, results, *best_of(results), make_world, {}, nullptr);
