@@ -1,6 +1,6 @@
 // What limits the best row of a run of the hosts' clocks, in simulated worlds.
 //
-//   results.causes = causes_of(results, scenario, options, progress);
+//   const evaluation::ClockCauses causes = causes_of({}, scenario, {}, nullptr);
 #pragma once
 
 #include "evaluation/clock_run/clock_evaluation.h"

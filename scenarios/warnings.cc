@@ -390,6 +390,12 @@ std::vector<std::string> loss_reasons(const Scenario& scenario) {
                     "the cameras",
                     100 * scenario.cameras.drop_probability));
   }
+  if (scenario.trigger.missed_pulse_probability > 0) {
+    reasons.push_back(
+        fmt::format("/trigger/missed_pulse_probability: {:.3g} % of the pulses never reach a "
+                    "branch of the trigger",
+                    100 * scenario.trigger.missed_pulse_probability));
+  }
   if (!scenario.faults.empty()) {
     reasons.push_back(fmt::format("/faults: {} in this world", scenario.faults.size()));
   }

@@ -68,8 +68,7 @@ std::vector<RigOption> rig_options(const RigRequest& request);
 scenarios::Scenario scenario_of(const RigOption& option, const RigRequest& request,
                                 const std::vector<scenarios::Pipeline>& pipelines);
 
-// The rates that the camera, a part, has a mode for, ascending. Of a steered one: the fastest of
-// its modes is the limit.
+// The rates that the camera, a part, has a mode for, ascending.
 std::vector<double> supported_rates_hz(const std::string& camera);
 
 }  // namespace simbench::evaluation

@@ -56,8 +56,8 @@ bool has_value(const Row& row, RankedBy ranked_by) {
 // further apart than gathering takes for one pulse.
 bool is_window_too_small(const Row& row) {
   constexpr double kFarBelow = 0.25;
-  return row.verified() && row.sets.pure == 0 && row.margin_ms < 0 &&
-         row.host_error_ms.median < kFarBelow * row.amd_ms.median;
+  const bool are_clocks_off = row.host_error_ms.median > kFarBelow * row.amd_ms.median;
+  return row.verified() && row.sets.pure == 0 && row.margin_ms < 0 && !are_clocks_off;
 }
 
 std::string failure_of(const Row& row, RankedBy ranked_by) {

@@ -51,10 +51,11 @@
 // Cost: 128 scores of the pipeline per seed (twice as many for each of polls and granularity), over
 // 32 captures in 16 worlds: gathering and delivery only change what is scored, the host clock only
 // the pipeline. Twice as many captures and worlds for each of the two, and where the scenario draws
-// errors of its delays' calibration, which an ideal delivery takes away. The cameras' half of a world is made once for all pipelines
-// (docs/design.md section 2), and so is the capture of an ideal host clock. Memory: on each thread
-// a scorer for every pipeline in four or two sets of stages at a time. Source: Shapley, "A value
-// for n-person games", 1953; docs/design.md section 6. Each oracle is a definition.
+// errors of its delays' calibration, which an ideal delivery takes away. The cameras' half of a
+// world is made once for all pipelines (docs/design.md section 2), and so is the capture of an
+// ideal host clock. Memory: on each thread a scorer for every pipeline in four or two sets of
+// stages at a time. Source: Shapley, "A value for n-person games", 1953; docs/design.md section 6.
+// Each oracle is a definition.
 //
 //   const std::vector<Budget> budgets =
 //       error_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr);
@@ -90,9 +91,8 @@ inline constexpr std::size_t kStageCount = 9;
 inline constexpr std::size_t kCommonStages = 7;  // of all pipelines
 // As the schema of scenarios names them.
 inline constexpr std::array<std::string_view, kStageCount> kStageNames = {
-    "trigger",      "exposure",   "stamp quantisation", "device clock",
-    "USB delivery", "host clock", "gathering",          "polls",
-    "granularity"};
+    "trigger",   "exposure", "stamp quantisation", "device clock", "USB delivery", "host clock",
+    "gathering", "polls",    "granularity"};
 
 // A set of stages, as the bits of a number below 2^9.
 class StageSet {

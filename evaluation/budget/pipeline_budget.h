@@ -25,8 +25,7 @@ struct PipelineBudget {
 
 // Runs of each seed, of a pipeline whose host clocks are divided, without polls and whose exposures
 // nobody steers.
-inline constexpr std::size_t kBudgetRuns =
-    (std::size_t{1} << kCommonStages) + kHostClockWorlds;
+inline constexpr std::size_t kBudgetRuns = (std::size_t{1} << kCommonStages) + kHostClockWorlds;
 
 // Returns one for each pipeline, in this order.
 std::vector<PipelineBudget> pipeline_budgets(const scenarios::Scenario& scenario,

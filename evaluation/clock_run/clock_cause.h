@@ -1,6 +1,7 @@
 // What a cause of the clocks' errors is; clock_causes.h finds them.
 //
-//   for (const ClockCause& cause : results.causes.found) print(cause.what, cause.effect());
+//   const ClockCause step{.what = "the step of a clock", .spread_from_ms = 1, .spread_to_ms = 0.1};
+//   step.effect();  // 0.9
 #pragma once
 
 #include <string>

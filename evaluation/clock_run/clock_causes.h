@@ -18,7 +18,8 @@
 // kMostClockReadings readings of hosts. Cost: at most eight runs of a row over kCauseSeeds seeds.
 // Errors: those of evaluate_clocks().
 //
-//   const ClockCauses causes = clock_causes(scenario, "chrony", make_world, options, nullptr);
+//   const ClockCauses causes =
+//       clock_causes(scenario, "chrony", make_clocks, {.duration_s = 3600}, nullptr);
 //   for (const ClockCause& cause : causes.found) print(cause.what, cause.spread_to_ms);
 #pragma once
 

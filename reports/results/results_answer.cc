@@ -281,6 +281,10 @@ AnswerText words_of(const Results& results, const Answer& answer, const Levers* 
     AnswerText text{.lead = answer.failed.empty()
                                 ? "No pipeline that a rig can run has a result here."
                                 : "Every pipeline that a rig can run failed."};
+    if (!answer.failed.empty()) {
+      const std::string lost = lost_sentence(results, *answer.failed.front().row);
+      if (!lost.empty()) text.lead += " " + lost;
+    }
     text.add("Failed", failed_text(answer));
     return text;
   }

@@ -7,8 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <random>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,9 @@ class RandomWorld {
   }
 
  private:
-  int pick(int count) { return std::uniform_int_distribution<>(0, count - 1)(random_); }
+  int pick(int count) { return boost::random::uniform_int_distribution<>(0, count - 1)(random_); }
   std::string value(double low, double high) {
-    return fmt::format("{:.4f}", std::uniform_real_distribution<>(low, high)(random_));
+    return fmt::format("{:.4f}", boost::random::uniform_real_distribution<>(low, high)(random_));
   }
   std::string pipelines() {
     constexpr std::array kHostSync = {"free_running",     "two_way_hull", "yoon2021_both",
@@ -75,7 +76,7 @@ class RandomWorld {
     return "[" + all + "]";
   }
 
-  std::mt19937 random_;
+  boost::random::mt19937 random_;
 };
 
 Results run(const scenarios::Scenario& scenario, std::uint64_t first_seed, std::uint64_t seeds) {

@@ -111,6 +111,7 @@ TEST(Levers, NothingHelpsWhereNothingIsWrong) {
                                 {"/network/latency_exponential_ms", "0"},
                                 {"/network/asymmetry_sigma_ms", "0"},
                                 {"/cameras/exposure_camera_periods", "0"},
+                                {"/usb/cameras_per_controller", "1"},
                                 {"/usb/delivery_jitter_transfers", "0"},
                                 {"/usb/host_jitter_transfers", "0"},
                                 {"/usb/kernel_copy_exponential_ms", "0"},
