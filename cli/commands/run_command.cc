@@ -180,10 +180,9 @@ std::optional<reports::ResultsAnswer> answer_of(const evaluation::Results& resul
                                                 const RunOptions& options) {
   const bool shows_none = options.format == "csv" || options.format == "tidy";
   if (shows_none && options.output.empty()) return reports::ResultsAnswer{};
+  if (options.no_levers) return reports::results_answer(results);
   return watched<reports::ResultsAnswer>([&](const evaluation::Progress& progress) {
-    return app::run_answer(results, scenario,
-                           {.levers = !options.no_levers, .jobs = options.evaluation.jobs},
-                           progress);
+    return app::run_answer(results, scenario, {.jobs = options.evaluation.jobs}, progress);
   });
 }
 

@@ -80,6 +80,8 @@ class Causes {
     json links = document_.value(json::json_pointer("/network/links"), json::array());
     bool is_stated = false;
     for (json& link : links) is_stated |= link.erase("asymmetry_ms") > 0;
+    std::erase_if(links.get_ref<json::array_t&>(),
+                  [](const json& link) { return link.size() < 2; });  // a host alone states nothing
     if (is_stated) sets.push_back({"/network/links", links.dump()});
     return sets;
   }

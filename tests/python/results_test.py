@@ -67,7 +67,7 @@ class ResultsTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             ours, theirs = os.path.join(folder, "ours"), os.path.join(folder, "theirs")
             self.result.save(ours)
-            command.simbench(*RUN, "--output", theirs)
+            command.simbench(*RUN, "--no-levers", "--output", theirs)
             self.assertEqual(sorted(os.listdir(ours)), sorted(os.listdir(theirs)))
             for name in ("frames.csv", "hosts.csv"):
                 self.assertTrue(

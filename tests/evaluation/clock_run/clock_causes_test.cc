@@ -50,7 +50,8 @@ TEST(ClockCauses, AStepIsTheCauseOfWhatAStepMade) {
 
 // A link 0.2 ms longer one way than the other puts its slave half of that off.
 TEST(ClockCauses, UnequalPathsAreTheCauseOfWhatTheyMade) {
-  const ClockCauses causes = causes_in({{"/network/links", R"([{"host": 1, "asymmetry_ms": 0.2}])"}});
+  const ClockCauses causes =
+      causes_in({{"/network/links", R"([{"host": 1, "asymmetry_ms": 0.2}])"}});
   ASSERT_THAT(causes.found, Not(IsEmpty()));
   EXPECT_EQ(causes.found.front().what, "paths that are unequal there and back");
   EXPECT_NEAR(causes.found.front().spread_from_ms, 0.1, 0.02);
