@@ -10,8 +10,6 @@
 #include <utility>
 
 #include "algorithms/registry.h"
-#include "scenarios/ideal.h"
-#include "scenarios/scenario_json.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -31,7 +29,8 @@ constexpr PollParameter kPollParameters[] = {
 
 class Causes {
  public:
-  explicit Causes(const Scenario& scenario) : scenario_(scenario), document_(json(scenario)) {}
+  explicit Causes(const Scenario& scenario)
+      : scenario_(scenario), document_(json::parse(scenario.resolved_json())) {}
 
   std::vector<ClockCause> of(const scenarios::Pipeline& pipeline) {
     add_faults();
