@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/interrupt.h"
@@ -38,11 +40,14 @@ void rank_by(const std::string& metric, Results& results) {
 reports::ResultsAnswer run_answer(const Results& results, const Scenario& scenario,
                                   const AnswerOptions& options,
                                   const evaluation::Progress& progress) {
+  const std::vector<std::string> warnings = scenarios::warnings(scenario);
   const Row* const best = evaluation::best_of(results);
-  if (best == nullptr || !options.levers) return reports::results_answer(results);
-  return reports::results_answer(results,
-                                 evaluation::find_levers(scenario, results, *best, simulated_world,
-                                                         {.jobs = options.jobs}, progress));
+  std::optional<evaluation::Levers> levers;
+  if (best != nullptr && options.levers) {
+    levers = evaluation::find_levers(scenario, results, *best, simulated_world,
+                                     {.jobs = options.jobs}, progress);
+  }
+  return reports::results_answer(results, std::move(levers), warnings);
 }
 
 }  // namespace simbench::app

@@ -180,7 +180,9 @@ std::optional<reports::ResultsAnswer> answer_of(const evaluation::Results& resul
                                                 const RunOptions& options) {
   const bool shows_none = options.format == "csv" || options.format == "tidy";
   if (shows_none && options.output.empty()) return reports::ResultsAnswer{};
-  if (options.no_levers) return reports::results_answer(results);
+  if (options.no_levers) {
+    return app::run_answer(results, scenario, {.levers = false}, nullptr);
+  }
   return watched<reports::ResultsAnswer>([&](const evaluation::Progress& progress) {
     return app::run_answer(results, scenario, {.jobs = options.evaluation.jobs}, progress);
   });

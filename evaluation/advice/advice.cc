@@ -145,13 +145,17 @@ class Adviser {
                                          .cancel = options.cancel},
                                         nullptr)
                               .front();
-    // AMD but where it is the error that was asked for, or there is a single camera.
-    const bool is_error =
-        std::isnan(budget.amd_ms.total.mean) ||
-        advice_.request.requirements.front().metric == &metric("absolute_error_ms");
-    const ErrorParts& parts = is_error ? budget.absolute_error_ms : budget.amd_ms;
+    // AMD but where another is asked for, or there is a single camera.
+    const std::string_view asked = advice_.request.requirements.front().metric->id;
+    const bool is_error = std::isnan(budget.amd_ms.total.mean) || asked == "absolute_error_ms";
+    const bool is_spread = asked.starts_with("exposure_spread");
+    const ErrorParts& parts = is_error    ? budget.absolute_error_ms
+                              : is_spread ? budget.physical_ms
+                                          : budget.amd_ms;
     const auto largest = std::ranges::max_element(parts.stages, {}, &BudgetPart::mean);
-    advice_.fails_first = {.metric = is_error ? "absolute error" : "AMD",
+    advice_.fails_first = {.metric = is_error    ? "absolute error"
+                                     : is_spread ? "exposure spread"
+                                                 : "AMD",
                            .stage = std::string(stage_name(
                                budget, static_cast<BudgetStage>(largest - parts.stages.begin()))),
                            .share = largest->mean / parts.total.mean};

@@ -84,7 +84,7 @@ struct OptionAdvice {
 
 // The part of each stage in the error of the recommended pipeline.
 struct FailsFirst {
-  std::string metric;  // whose error was divided: "AMD" or "absolute error"
+  std::string metric;  // that was divided: "AMD", "absolute error" or "exposure spread"
   std::string stage;
   double share = kNan;  // of the error
 };

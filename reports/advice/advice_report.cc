@@ -251,9 +251,8 @@ AnswerText advice_answer(const Advice& advice) {
                                    margin_text(best.margin)));
   if (advice.fails_first) {
     answer.add("Fails first",
-               fmt::format("What fails first is the stage {}, which makes {} of the {}.",
-                           advice.fails_first->stage, share_text(advice.fails_first->share),
-                           advice.fails_first->metric));
+               fmt::format("The stage {}, which makes {} of the {}.", advice.fails_first->stage,
+                           share_text(advice.fails_first->share), advice.fails_first->metric));
   }
   return answer;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluation/answer/standing.h"
 #include "evaluation/statistics/paired.h"
 #include "recording/collected.h"
 #include "recording/counted.h"
@@ -203,6 +204,13 @@ void note_more(const Archive& result, const Baseline& baseline, GateReport& repo
   if (!more.empty()) {
     report.notes.push_back(
         fmt::format("not in the baseline, so not checked: {}", fmt::join(more, ", ")));
+  }
+  const evaluation::RankedBy ranked_by = evaluation::ranking_of(result.results);
+  for (const Row& row : result.results.rows) {
+    const evaluation::ReasonedStanding standing = evaluation::standing_of(row, ranked_by);
+    if (standing.is != evaluation::RowStanding::kFailed) continue;
+    report.notes.push_back(
+        fmt::format("{} failed, so its values say little: {}", row.pipeline, standing.reason));
   }
   const auto without_values = std::count_if(
       report.checks.begin(), report.checks.end(),

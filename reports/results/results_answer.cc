@@ -308,11 +308,34 @@ AnswerText words_of(const Results& results, const Answer& answer, const Levers* 
   return text;
 }
 
+// What changes the meaning of the numbers; the first note stands for all.
+std::string warnings_text(const Results& results, const ResultsAnswer& answer,
+                          const std::vector<std::string>& warnings) {
+  std::vector<std::string> sentences;
+  for (const std::vector<std::string>* each : {&warnings, &results.warnings}) {
+    for (const std::string& warning : *each) {
+      // The lead names what loses pulses by its pointer, without the file.
+      const bool is_said = std::ranges::any_of(results.loss_reasons, [&](const std::string& said) {
+        return warning.ends_with(said) && answer.text.lead.find(said) != std::string::npos;
+      });
+      if (!is_said) sentences.push_back(warning + ".");
+    }
+  }
+  const Row* const best = answer.data.best;
+  if (best != nullptr && !best->notes.empty()) {
+    sentences.push_back(fmt::format("{} of {}: {}.", counted(best->notes.size(), "note"),
+                                    best->pipeline, best->notes.front()));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
 }  // namespace
 
-ResultsAnswer results_answer(const Results& results, std::optional<Levers> levers) {
+ResultsAnswer results_answer(const Results& results, std::optional<Levers> levers,
+                             const std::vector<std::string>& warnings) {
   ResultsAnswer answer{.data = evaluation::answer_of(results), .levers = std::move(levers)};
   answer.text = words_of(results, answer.data, answer.levers ? &*answer.levers : nullptr);
+  answer.text.add("Warnings", warnings_text(results, answer, warnings));
   return answer;
 }
 

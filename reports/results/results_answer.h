@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "evaluation/answer/answer.h"
 #include "evaluation/levers/levers.h"
@@ -24,9 +25,12 @@ struct ResultsAnswer {
 };
 
 // `levers`: of the best pipeline; nothing: they were not looked for, and nothing is said of them.
+// `warnings`: of the world (scenarios/loader.h), which are lines of the answer, as those of the
+// results and the notes of the best row are; without those that its first sentence has.
 // Cost: that of answer_of(), which takes seconds of many rows.
 ResultsAnswer results_answer(const evaluation::Results& results,
-                             std::optional<evaluation::Levers> levers = {});
+                             std::optional<evaluation::Levers> levers = {},
+                             const std::vector<std::string>& warnings = {});
 
 // Its sentences that other answers have too; `answer` has a best pipeline.
 //

@@ -51,7 +51,7 @@ TEST_F(AdviseTest, AnswersFirst) {
   EXPECT_THAT(result.out,
               StartsWith("4 cameras at 30 Hz: amd<0.1ms\n2 x office_pc, office_switch"));
   EXPECT_THAT(result.out, AllOf(HasSubstr("in 72 of 72 simulated rigs"), HasSubstr("Margin"),
-                                HasSubstr("What fails first"), HasSubstr("What is assumed")));
+                                HasSubstr("Fails first: The stage"), HasSubstr("What is assumed")));
 }
 
 TEST_F(AdviseTest, IsTheSameAgainWithAnyNumberOfThreads) {

@@ -13,6 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using scenarios::InputError;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -47,6 +48,14 @@ TEST(ExactGate, EqualResultsPass) {
   EXPECT_TRUE(report.passed());
   EXPECT_EQ(report.count(GateOutcome::kSame), 8U);
   EXPECT_THAT(report.notes, IsEmpty());
+}
+
+TEST(ExactGate, APipelineThatFailedIsSaid) {
+  Archive now = sample_archive("now");
+  now.results.rows[1].unsynchronised_hosts = 3;
+  EXPECT_THAT(exact(now).notes,
+              Contains(HasSubstr("good failed, so its values say little: hosts were not "
+                                 "synchronised (3 over all seeds)")));
 }
 
 TEST(ExactGate, RoundingIsNoChangeAndAMillionthIs) {
