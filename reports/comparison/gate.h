@@ -13,7 +13,8 @@
 //
 // In both modes a pipeline of the baseline that is missing in the result fails; an additional one
 // is noted, and so are differences of the algorithms and pipelines that failed
-// (evaluation/answer/standing.h), whose small errors say little. The speed of the run does not matter.
+// (evaluation/answer/standing.h), whose small errors say little. The speed of the run does not
+// matter.
 //
 // Errors: scenarios::InputError for a result that cannot be compared with this baseline, with the
 // difference and the remedy.
