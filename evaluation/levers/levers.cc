@@ -436,7 +436,15 @@ double missing_share(const Row& row) {
 std::optional<Levers> find_levers(const Scenario& scenario, const Results& results, const Row& best,
                                   const WorldFactory& make_world, const LeverOptions& options,
                                   const Progress& progress) {
-  return LeverSearch(scenario, results, best, make_world, options, progress).run();
+  try {
+    return LeverSearch(scenario, results, best, make_world, options, progress).run();
+  } catch (const EvaluationCancelled&) {
+    throw;
+  } catch (const EvaluationFailed& failure) {
+    return Levers{.problem = failure.what()};
+  } catch (const scenarios::InputError& error) {
+    return Levers{.problem = error.what()};
+  }
 }
 
 }  // namespace simbench::evaluation

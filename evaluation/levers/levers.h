@@ -28,9 +28,10 @@
 //
 // Not tried: pipelines of programs, and worlds that are too large (LeverOptions::most_events).
 //
-// Errors: what evaluate() throws for a world that was run already, nothing for a change that its
-// world forbids. Cost: some 80 runs of algorithms, 40 of variants and changes over
-// kScreeningLeverSeeds seeds, and at most kMostVerified runs as long as those of a row.
+// Errors: EvaluationCancelled. A change that its world forbids is left out; an algorithm that fails
+// in this world, which nobody asked for, ends the search and not the run (Levers::problem). Cost:
+// some 80 runs of algorithms, 40 of variants and changes over kScreeningLeverSeeds seeds, and at
+// most kMostVerified runs as long as those of a row.
 //
 //   const std::optional<Levers> levers =
 //       find_levers(scenario, results, *best_of(results), make_world, {}, nullptr);
@@ -80,6 +81,7 @@ struct Levers {
   std::size_t algorithms = 0;      // tried
   std::size_t changes = 0;         // of the rig, tried
   std::vector<Lever> effective{};  // the most effective first
+  std::string problem{};           // why they are not known; then there is nothing else
 };
 
 // The share of the pulses due that the row has no whole set of; NaN: it is not known.

@@ -62,6 +62,7 @@ Json lever_json(const Lever& lever, RankedBy ranked_by) {
 std::string levers_text(const Levers& levers, RankedBy ranked_by, std::uint64_t seeds_of_run) {
   const std::string of_seeds =
       levers.seeds < seeds_of_run ? fmt::format(" (over {})", counted(levers.seeds, "seed")) : "";
+  if (!levers.problem.empty()) return fmt::format("It is not known: {}.", levers.problem);
   if (levers.effective.empty()) {
     return fmt::format("Nothing that was tried improves it by 5 %{}: {} and {} of the rig.",
                        of_seeds, counted(levers.algorithms, "other algorithm"),
