@@ -314,9 +314,10 @@ std::string warnings_text(const Results& results, const ResultsAnswer& answer,
   std::vector<std::string> sentences;
   for (const std::vector<std::string>* each : {&warnings, &results.warnings}) {
     for (const std::string& warning : *each) {
-      // The lead names what loses pulses by its pointer, without the file.
+      // The lead names what loses pulses by its pointer, the warning by its file or option.
       const bool is_said = std::ranges::any_of(results.loss_reasons, [&](const std::string& said) {
-        return warning.ends_with(said) && answer.text.lead.find(said) != std::string::npos;
+        return warning.ends_with(said.substr(std::min(said.find(": "), said.size()))) &&
+               answer.text.lead.find(said) != std::string::npos;
       });
       if (!is_said) sentences.push_back(warning + ".");
     }

@@ -180,15 +180,15 @@ TEST(ResultsAnswer, WarningsAreLinesUnlessTheFirstSentenceHasThem) {
   evaluation::Results results = pipelines_of({{"a", 2}}, 20);
   results.warnings = {"the links are asymmetric"};
   results.rows[0].notes = {"repetition 3: no frames", "repetition 4: no frames"};
-  const std::vector<std::string> of_world = {"my.json:3: /cameras/exposure_ms: too long"};
+  const std::vector<std::string> of_world = {"--set /cameras/exposure_ms=40: too long"};
   EXPECT_THAT(whole_text(results_answer(results, {}, of_world).text),
-              HasSubstr("my.json:3: /cameras/exposure_ms: too long. the links are asymmetric. 2 "
+              HasSubstr("--set /cameras/exposure_ms=40: too long. the links are asymmetric. 2 "
                         "notes of a: repetition 3: no frames."));
   results.rows[0].sets.complete_pulses = results.rows[0].sets.pure = 400;
   results.loss_reasons = {"/cameras/exposure_ms: too long"};
   const AnswerText lost = results_answer(results, {}, of_world).text;
   EXPECT_THAT(lost.lead, HasSubstr("/cameras/exposure_ms: too long"));
-  EXPECT_THAT(whole_text(lost), Not(HasSubstr("my.json:3")));
+  EXPECT_THAT(whole_text(lost), Not(HasSubstr("--set")));
 }
 
 TEST(ResultsAnswer, SaysThatNothingTriedHelps) {
