@@ -4,6 +4,7 @@
 //   step.effect();  // 0.9
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct ClockCause {
 };
 
 struct ClockCauses {
+  std::uint64_t seeds = 0;           // of which values are the means
   std::vector<std::string> tried{};  // empty: nothing was asked
   std::vector<ClockCause> found{};   // the one with the largest effect first
 };

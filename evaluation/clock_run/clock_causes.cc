@@ -166,7 +166,7 @@ ClockCauses clock_causes(const Scenario& scenario, const std::string& pipeline,
   const double readings =
       static_cast<double>(few.seeds * few.duration_s) * static_cast<double>(scenario.hosts.count);
   if (readings > kMostClockReadings) return {};
-  ClockCauses asked;
+  ClockCauses asked{.seeds = few.seeds};
   std::vector<ClockCause> causes = Causes(scenario).of(*named);
   const Errors with = errors_of(scenario, make_world, few);
   std::uint64_t done = 0;

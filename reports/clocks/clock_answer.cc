@@ -7,6 +7,7 @@
 #include <string>
 
 #include "evaluation/answer/answer.h"
+#include "recording/counted.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/results/results_answer.h"
 #include "reports/text/number_text.h"
@@ -87,19 +88,20 @@ std::string causes_text(const ClockCauses& causes) {
   }
   std::string text;
   for (std::size_t i = 0; i < std::min(kNamedCauses, causes.found.size()); ++i) {
-    text += (text.empty() ? "" : " ") + cause_sentence(causes.found[i]);
+    text += cause_sentence(causes.found[i]) + " ";
   }
-  return text;
+  return fmt::format("{}(Means over {}.)", text, counted(causes.seeds, "seed"));
 }
 
 std::string without_master_sentence(const Row& row) {
   if (std::isnan(row.holdover_600_ms.median)) return "";
   const double recovery_s = evaluation::median_time(row.recovery_s.values);
-  return fmt::format("Without its master a host is {} off after 60 s, {} after 600 s; {}.",
-                     time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
-                     std::isnan(recovery_s)
-                         ? "then half of the seeds or more do not recover within an hour"
-                         : fmt::format("then it recovers within {}", time_text(1000 * recovery_s)));
+  return fmt::format(
+      "Without its master a host is {} off after 60 s, {} after 600 s; {}.",
+      time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
+      std::isnan(recovery_s) ? "then half of the seeds or more do not recover within an hour"
+      : recovery_s == 0      ? "then it is right at once"
+                        : fmt::format("then it recovers within {}", time_text(1000 * recovery_s)));
 }
 
 }  // namespace

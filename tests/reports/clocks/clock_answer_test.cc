@@ -27,6 +27,22 @@ TEST(ClockAnswer, SaysWhoIsBestAndWhenItIsInSync) {
   EXPECT_THAT(text, Not(HasSubstr("oracle")));
 }
 
+TEST(ClockAnswer, CausesAreFromOneValueToAnother) {
+  evaluation::ClockResults results = sample_clock_results();
+  results.causes = {.seeds = 2, .tried = {"the step of a clock", "noise"}};
+  EXPECT_THAT(whole_text(clock_answer(results)),
+              HasSubstr("Nothing alone, by 20 % or more: the step of a clock, noise."));
+  results.causes.found = {{.what = "the step of a clock",
+                           .spread_from_ms = 2,
+                           .spread_to_ms = 1.5,
+                           .largest_from_ms = 140000,
+                           .largest_to_ms = 0.01}};
+  const std::string text = whole_text(clock_answer(results));
+  EXPECT_THAT(text, HasSubstr("Without the step of a clock: largest error of a host from 140 to "
+                              "1.00e-05 s. (Means over 2 seeds.)"));
+  EXPECT_THAT(text, Not(HasSubstr("Mostly constant")));
+}
+
 TEST(ClockAnswer, SaysThatClocksDoNotComeTogether) {
   evaluation::Results results = sample_clock_results().results;
   results.rows[0].below_1_ms_s = results.rows[0].below_0_01_ms_s;
