@@ -47,7 +47,12 @@ std::string time_band_text(double low_ms, double high_ms) {
 
 std::string time_change_text(double from_ms, double to_ms) {
   if (!std::isfinite(from_ms) || !std::isfinite(to_ms)) return "-";
-  const TimeUnit& unit = time_unit_of(std::max(std::abs(from_ms), std::abs(to_ms)));
+  const double large_ms = std::max(std::abs(from_ms), std::abs(to_ms));
+  constexpr double kFar = 1000;  // one unit would need a power of ten
+  if (kFar * std::min(std::abs(from_ms), std::abs(to_ms)) < large_ms) {
+    return fmt::format("from {} to {}", time_text(from_ms), time_text(to_ms));
+  }
+  const TimeUnit& unit = time_unit_of(large_ms);
   return fmt::format("from {} to {} {}", number_text(from_ms * unit.per_ms),
                      number_text(to_ms * unit.per_ms), unit.name);
 }

@@ -17,7 +17,8 @@ std::string tick_text(double ms);
 // Both ends in the unit of the one further from zero: "[0.350, 1.20] ms"; "-" if one is not finite.
 std::string time_band_text(double low_ms, double high_ms);
 
-// Both in the unit of the larger: "from 2.92 to 1.89 ms"; "-" if one is not finite.
+// Both in the unit of the larger, "from 2.92 to 1.89 ms", unless they are more than a factor of
+// 1000 apart: "from 50.0 ms to 280 ns"; "-" if one is not finite.
 std::string time_change_text(double from_ms, double to_ms);
 
 }  // namespace simbench::reports
