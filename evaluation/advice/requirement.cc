@@ -111,7 +111,8 @@ struct Quantity {
 std::optional<Quantity> next_quantity(std::string& text) {
   text = trimmed(text);
   const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
-  const auto value = number_in<double>(std::string_view(text).substr(0, end));
+  const std::string number = text.substr(0, end);
+  const auto value = number_in<double>(number);
   if (!value) return std::nullopt;
   text = trimmed(text.substr(end));
   const std::size_t unit_end = std::min(text.find(' '), text.size());

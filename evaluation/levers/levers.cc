@@ -64,7 +64,7 @@ std::vector<std::string> variants_of(const std::string& base, const DeviceTimeNa
     if (as.sdk && *steady != '\0') continue;
     for (const char* exposure : {"", "_exposure_corrected"}) {
       if (as.calibrated && *exposure != '\0') continue;
-      names.push_back(base + steady + exposure + end);
+      names.push_back(fmt::format("{}{}{}{}", base, steady, exposure, end));
     }
   }
   return names;

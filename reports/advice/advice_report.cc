@@ -175,11 +175,12 @@ std::string need_text(const Advice& advice) {
   for (const Requirement& each : advice.request.requirements) {
     if (!each.tolerance.empty()) became[each.tolerance].push_back(each.text);
   }
-  std::vector<std::string> sentences;
+  std::string sentences;
   for (const auto& [tolerance, texts] : became) {
-    sentences.push_back(fmt::format("{} is taken as {}.", tolerance, fmt::join(texts, " and ")));
+    sentences += fmt::format("{}{} is taken as {}.", sentences.empty() ? "" : " ", tolerance,
+                             fmt::join(texts, " and "));
   }
-  return fmt::format("{}", fmt::join(sentences, " "));
+  return sentences;
 }
 
 Json pipeline_json(const PipelineAdvice& pipeline, const Advice& advice) {

@@ -70,7 +70,7 @@ TEST(AdviceReport, AnswersWithTheRecommendedRig) {
   EXPECT_THAT(answer, HasSubstr("with pps.poll.yoon2021"));
   EXPECT_THAT(answer, HasSubstr("price class middle (1500-3000 EUR)"));
   EXPECT_THAT(answer, HasSubstr("2: the limit over the 95 % quantile"));
-  EXPECT_THAT(answer, HasSubstr("the stage USB delivery, which makes 46.0 % of the AMD."));
+  EXPECT_THAT(answer, HasSubstr("The stage USB delivery, which makes 46.0 % of the AMD."));
 }
 
 TEST(AdviceReport, NamesTheNearestWhereNoneMeetsIt) {
