@@ -18,7 +18,7 @@ std::string tick_text(double ms);
 std::string time_band_text(double low_ms, double high_ms);
 
 // Both in the unit of the larger, "from 2.92 to 1.89 ms", unless they are more than a factor of
-// 1000 apart: "from 50.0 ms to 280 ns"; "-" if one is not finite.
+// 1000 apart: "from 50.0 ms to 0.280 us"; "-" if one is not finite.
 std::string time_change_text(double from_ms, double to_ms);
 
 }  // namespace simbench::reports

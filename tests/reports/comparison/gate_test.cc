@@ -21,8 +21,9 @@ using testing::Not;
 using testing::ThrowsMessage;
 
 // The sample, whose pipelines found their sets.
-Archive working_archive(const std::string& path) {
-  Archive archive = sample_archive(path);
+template <class... More>
+Archive working_archive(const std::string& path, const More&... more) {
+  Archive archive = sample_archive(path, more...);
   for (evaluation::Row& row : archive.results.rows) {
     row.sets.emitted = row.sets.pure = row.sets.complete_pulses = 960;
   }

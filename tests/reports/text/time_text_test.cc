@@ -41,7 +41,7 @@ TEST(TimeText, AChangeHasOneUnitWhereThatIsReadable) {
   EXPECT_EQ(time_change_text(2.92, 1.89), "from 2.92 to 1.89 ms");
   EXPECT_EQ(time_change_text(0.0128, 0.00422), "from 12.8 to 4.22 us");
   EXPECT_EQ(time_change_text(1.5, 0.1), "from 1.50 to 0.100 ms");
-  EXPECT_EQ(time_change_text(50, 0.00028), "from 50.0 ms to 280 ns");
+  EXPECT_EQ(time_change_text(50, 0.00028), "from 50.0 ms to 0.280 us");
   EXPECT_EQ(time_change_text(2, 0), "from 2.00 ms to 0");
   EXPECT_EQ(time_change_text(0, 0), "from 0 to 0 ns");
   EXPECT_EQ(time_change_text(1, std::numeric_limits<double>::quiet_NaN()), "-");
