@@ -38,14 +38,19 @@ std::vector<std::string> found_in(const ClockCauses& causes) {
   return names;
 }
 
+// The master's clock too (a bug report: offsets of a PTP network that jump now and then).
 TEST(ClockCauses, AStepIsTheCauseOfWhatAStepMade) {
-  const ClockCauses causes = causes_in(
-      {{"/faults", R"([{"kind": "clock_step", "host": 1, "at_ms": 600000, "step_ms": 140000}])"}});
-  ASSERT_THAT(causes.found, Not(IsEmpty()));
-  EXPECT_EQ(causes.found.front().what, "the step of a clock");
-  EXPECT_NEAR(causes.found.front().largest_from_ms, 140000, 1);
-  EXPECT_LT(causes.found.front().largest_to_ms, 1);
-  EXPECT_EQ(causes.found.front().sets.front().pointer, "/faults");
+  for (const int host : {0, 1}) {
+    SCOPED_TRACE(host);
+    const ClockCauses causes = causes_in(
+        {{"/faults", R"([{"kind": "clock_step", "at_ms": 600000, "step_ms": 140000, "host": )" +
+                         std::to_string(host) + "}]"}});
+    ASSERT_THAT(causes.found, Not(IsEmpty()));
+    EXPECT_EQ(causes.found.front().what, "the step of a clock");
+    EXPECT_NEAR(causes.found.front().largest_from_ms, 140000, 1);
+    EXPECT_LT(causes.found.front().largest_to_ms, 1);
+    EXPECT_EQ(causes.found.front().sets.front().pointer, "/faults");
+  }
 }
 
 // A link 0.2 ms longer one way than the other puts its slave half of that off.
