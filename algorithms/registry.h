@@ -118,7 +118,7 @@ const Entry* find_algorithm(const std::string& name);
 // returns null if there is none of that name.
 std::vector<const AlgorithmInfo*> algorithms_of(PipelineStage stage);
 const AlgorithmInfo* find_algorithm(PipelineStage stage, const std::string& name);
-// Those of simbench alone.
+// Lists simbench's own algorithms, without those that were registered from outside.
 std::vector<const AlgorithmInfo*> own_algorithms_of(PipelineStage stage);
 
 }  // namespace simbench

@@ -104,7 +104,7 @@ class StageSet {
   constexpr bool has(BudgetStage stage) const { return (bits_ & bit(stage)) != 0; }
   constexpr std::size_t bits() const { return bits_; }
   constexpr StageSet with(BudgetStage stage) const { return StageSet(bits_ | bit(stage)); }
-  // Those of both.
+  // Returns the stages that are in both sets.
   constexpr StageSet among(StageSet others) const { return StageSet(bits_ & others.bits_); }
 
  private:

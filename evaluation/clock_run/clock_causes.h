@@ -14,7 +14,7 @@
 // (asked twice as often). A cause is listed if without it the mean spread of the clocks, or the
 // largest error of a host, is smaller by kLeastEffect. Causes overlap: their effects do not add up.
 //
-// Not asked of programs, nor of worlds in which two runs of the row take more than
+// Programs are not asked, nor are worlds in which two runs of the row take more than
 // kMostClockReadings readings of hosts. Cost: at most eight runs of a row over kCauseSeeds seeds.
 // Errors: those of evaluate_clocks().
 //

@@ -4,8 +4,7 @@
 // From `from` to `duration` the run is measured: spread, time errors (evaluation/scoring/
 // time_errors.h) and stability (evaluation/stability). The times until the spread is below a bound
 // for good count from the start of the run to `duration`; they exist only if a tenth of it remains.
-// Then the master is lost for
-// kMasterLostFor, and the clocks are watched for kRecovery more:
+// Then the master is lost for kMasterLostFor, and the clocks are watched for kRecovery more:
 //
 //   spread      largest minus smallest clock of all hosts, the master included
 //   holdover    largest |TE| of any slave 60 s and 600 s after the loss

@@ -56,7 +56,8 @@ bool is_better(const Value& a, const Value& b) {
   return a_missing != b_missing ? a_missing < b_missing : a.ranked < b.ranked;
 }
 
-// As users of calibrations and of the SDK's stamps have it, these two stay.
+// A calibration and the SDK's stamps stay as `as` has them: a user cannot do without the second,
+// and the first is a lever of its own.
 std::vector<std::string> variants_of(const std::string& base, const DeviceTimeName& as) {
   std::vector<std::string> names;
   const std::string end = std::string(as.sdk ? "_sdk" : "") + (as.calibrated ? "_calibrated" : "");

@@ -26,7 +26,7 @@
 // neither the absolute error nor the hosts' clocks worse: a smaller AMD alone can hide what
 // differs.
 //
-// Not tried: pipelines of programs, and worlds that are too large (LeverOptions::most_events).
+// Pipelines of programs and worlds that are too large (LeverOptions::most_events) are not searched.
 //
 // Errors: EvaluationCancelled. A change that its world forbids is left out; an algorithm that fails
 // in this world, which nobody asked for, ends the search and not the run (Levers::problem). Cost:

@@ -20,11 +20,11 @@ Override set(std::string pointer, double value) {
   return {std::move(pointer), fmt::format("{}", value)};
 }
 
-// Adds to `sets` each member that is not 0 already, times `factor`.
 struct Member {
   std::string_view pointer;
   double value;
 };
+// Sets each member that is not 0 already to `factor` times its value.
 std::vector<Override> scaled(const std::vector<Member>& members, double factor) {
   std::vector<Override> sets;
   for (const Member& each : members) {

@@ -57,7 +57,7 @@ std::string in_sync_sentence(const Row& row) {
       time_text(row.max_te_ms.median));
 }
 
-// Where nobody asked for causes: what the error looks like, which is no cause.
+// Says what the error looks like, which is no cause, where nobody asked for causes.
 std::string kind_of_error_sentence(const Row& row) {
   const double share = row.constant_te_ms.median / row.max_te_ms.median;
   if (!std::isfinite(share)) return "";
