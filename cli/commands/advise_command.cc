@@ -172,11 +172,10 @@ void check_rare_options(const AdviseOptions& options) {
 }
 
 void check_hosts_option(const AdviseOptions& options) {
-  const scenarios::Part* const camera = scenarios::find_part(options.request.rig.camera);
-  if (options.hosts.empty() || camera == nullptr || !camera->is_host) return;
+  if (options.hosts.empty() || !evaluation::camera_of(options.request.rig).is_host) return;
   throw scenarios::InputError(
       fmt::format("--hosts: found '{}', but each {} is a host of its own; leave it out",
-                  scenarios::shown_text(options.hosts), camera->part));
+                  scenarios::shown_text(options.hosts), options.request.rig.camera));
 }
 
 int advise(AdviseOptions options) {

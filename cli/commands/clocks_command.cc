@@ -74,10 +74,11 @@ int clocks(ClocksOptions options) {
         return std::make_optional(app::causes_of(*results, scenario, run, progress));
       },
       {.unit = "cause"});
-  if (!causes) return kInterrupted;
-  results->causes = std::move(*causes);
+  if (causes) results->causes = std::move(*causes);
   print_warnings(results->results.warnings);
+  // Whoever interrupts the search for causes has the results all the same.
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
+  if (!causes) return kInterrupted;
   print_result(app::clock_text(*results, scenario, options.format));
   if (plot) {  // last: without gnuplot the results are there all the same
     reports::draw(reports::clock_figure(*results), *plot, options.figure);

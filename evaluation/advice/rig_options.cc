@@ -34,17 +34,6 @@ std::vector<Part> parts_of(PartKind kind, const RigRequest& request) {
   return found;
 }
 
-// Throws if there is no such camera.
-Part camera_of(const RigRequest& request) {
-  std::vector<std::string> known;
-  for (const Part& part : parts_of(PartKind::kCamera, request)) {
-    if (part.part == request.camera) return part;
-    known.push_back(part.part);
-  }
-  throw InputError(fmt::format("--camera: found '{}', allowed: {}",
-                               scenarios::shown_text(request.camera), fmt::join(known, ", ")));
-}
-
 bool steers(const Part& camera) { return !camera.capture_alignment.empty(); }
 
 // A sync mode and a mode of the camera that give the rate.
@@ -185,6 +174,16 @@ std::string pipelines_json(const std::vector<scenarios::Pipeline>& pipelines) {
 }
 
 }  // namespace
+
+Part camera_of(const RigRequest& request) {
+  std::vector<std::string> known;
+  for (const Part& part : parts_of(PartKind::kCamera, request)) {
+    if (part.part == request.camera) return part;
+    known.push_back(part.part);
+  }
+  throw InputError(fmt::format("--camera: found '{}', allowed: {}",
+                               scenarios::shown_text(request.camera), fmt::join(known, ", ")));
+}
 
 std::string RigOption::name() const {
   std::string text;

@@ -61,6 +61,10 @@ struct RigOption {
   std::vector<std::string> host_sync() const;
 };
 
+// Returns the part that RigRequest::camera names, of the user's or simbench's own. Throws
+// scenarios::InputError if there is none.
+scenarios::Part camera_of(const RigRequest& request);
+
 // The cheapest first. Throws scenarios::InputError if there is none.
 std::vector<RigOption> rig_options(const RigRequest& request);
 

@@ -4,6 +4,7 @@
 //   step.effect();  // 0.9
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,22 +15,31 @@
 namespace simbench::evaluation {
 
 struct ClockCause {
-  std::string what;                       // "the steps of a clock"
-  std::vector<scenarios::Override> sets;  // what takes it away
+  std::string what;                         // "the steps of a clock"
+  std::vector<scenarios::Override> sets{};  // what takes it away
   // Means over the seeds, with and without it.
   double spread_from_ms = kNan;
   double spread_to_ms = kNan;
   double largest_from_ms = kNan;
   double largest_to_ms = kNan;
 
-  // How much smaller the more affected of the two is without it, as a share.
-  double effect() const;
+  // How much smaller each is without the cause, as a share, and the larger of the two.
+  double spread_effect() const { return saved_share(spread_from_ms, spread_to_ms); }
+  double largest_effect() const { return saved_share(largest_from_ms, largest_to_ms); }
+  double effect() const { return std::max(spread_effect(), largest_effect()); }
+
+  static double saved_share(double from_ms, double to_ms) {
+    return from_ms > 0 ? 1 - to_ms / from_ms : 0;
+  }
 };
 
 struct ClockCauses {
   std::uint64_t seeds = 0;           // of which values are the means
   std::vector<std::string> tried{};  // empty: nothing was asked
   std::vector<ClockCause> found{};   // the one with the largest effect first
+  // Those that this world does not let one take away: "the time between ...: found 0.1, allowed
+  // ...".
+  std::vector<std::string> refused{};
 };
 
 }  // namespace simbench::evaluation

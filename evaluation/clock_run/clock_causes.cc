@@ -147,13 +147,7 @@ Errors errors_of(const Scenario& scenario, const ClockWorldFactory& make_world,
   return {mean_of(row.clock_spread_ms.values), mean_of(row.max_te_ms.values)};
 }
 
-double saved(double from, double to) { return from > 0 ? 1 - to / from : 0; }
-
 }  // namespace
-
-double ClockCause::effect() const {
-  return std::max(saved(spread_from_ms, spread_to_ms), saved(largest_from_ms, largest_to_ms));
-}
 
 ClockCauses clock_causes(const Scenario& scenario, const std::string& pipeline,
                          const ClockWorldFactory& make_world, const ClockOptions& options,
@@ -181,8 +175,8 @@ ClockCauses clock_causes(const Scenario& scenario, const std::string& pipeline,
       cause.spread_to_ms = without.spread_ms;
       cause.largest_from_ms = with.largest_ms;
       cause.largest_to_ms = without.largest_ms;
-    } catch (const scenarios::InputError&) {
-      continue;  // the world forbids it: no effect
+    } catch (const scenarios::InputError& error) {
+      asked.refused.push_back(fmt::format("{}: {}", cause.what, error.what()));
     }
   }
   std::erase_if(causes, [](const ClockCause& cause) { return !(cause.effect() >= kLeastEffect); });

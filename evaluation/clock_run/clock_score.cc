@@ -11,6 +11,8 @@ namespace simbench::evaluation {
 namespace {
 
 constexpr std::array<double, 3> kBoundsMs = {1, 0.1, 0.01};
+// A spread is below a bound for good only if the last of so many parts of a run saw it there.
+constexpr std::int64_t kLeastRest = 10;
 
 // The curve over all clocks: combine() adds a clock's value to the sum so far, finish() makes the
 // value of the sum over so many clocks.
@@ -102,7 +104,6 @@ void ClockScorer::on_errors(TrueTime at, std::span<const double> errors_s) {
     watch_loss(since_start - span_.duration, errors_s, spread_ms);
     return;
   }
-  last_ = at;
   for (std::size_t i = 0; i < kBoundsMs.size(); ++i) {
     if (spread_ms >= kBoundsMs[i]) last_above_[i] = at;
   }
@@ -144,9 +145,6 @@ void ClockScorer::watch_loss(Nanoseconds since_loss, std::span<const double> err
   if (!last_apart_) last_apart_ = Nanoseconds(0);
   if (spread_ms > spread_max_ms_) last_apart_ = since_loss - kMasterLostFor + kReadingInterval;
 }
-
-// A spread is below a bound for good only if at least this part of the run saw it there.
-constexpr std::int64_t kLeastRest = 10;
 
 ClockScore ClockScorer::finish(std::uint64_t messages) {
   ClockScore score;

@@ -89,7 +89,6 @@ class ClockScorer final : public ClockSink {
   double spread_max_ms_ = 0;
   TimeErrors errors_;
   std::array<std::optional<TrueTime>, 3> last_above_{};
-  TrueTime last_{};
   double holdover_60_ms_ = kNan;
   double holdover_600_ms_ = kNan;
   std::optional<Nanoseconds> last_apart_;  // since the master's return

@@ -128,7 +128,8 @@ class LeverSearch {
         ranked_by_(ranking_of(results)),
         make_world_(make_world),
         options_(options),
-        caller_(progress) {}
+        caller_(progress),
+        changes_(rig_changes(scenario)) {}
 
   std::optional<Levers> run() {
     const auto found = std::ranges::find(scenario_.pipelines, best_.pipeline, &Pipeline::name);
@@ -181,7 +182,7 @@ class LeverSearch {
     std::uint64_t algorithms = 0;
     for (const StageInfo& stage : kPipelineStages) algorithms += own_algorithms_of(stage.id).size();
     constexpr std::uint64_t kOfSecondRound = 30;
-    return algorithms + screening_seeds_ * (kOfSecondRound + rig_changes(scenario_).size()) +
+    return algorithms + screening_seeds_ * (kOfSecondRound + changes_.size()) +
            levers_.seeds * kMostVerified;
   }
 
@@ -328,7 +329,7 @@ class LeverSearch {
 
   void screen_changes(const Pipeline& best) {
     std::vector<Screened> promising;
-    for (const RigChange& change : rig_changes(scenario_)) {
+    for (const RigChange& change : changes_) {
       bool is_tried = false;
       for (Trial& trial : trials_of(change, best)) {
         const std::optional<Row> row = row_of(trial, screening(), /*keeps_name=*/true);
@@ -349,10 +350,7 @@ class LeverSearch {
 
   // A user's run of the change. Nothing if the world forbids it.
   std::optional<Row> row_of(Trial& trial, EvaluationOptions options, bool keeps_name) {
-    const bool is_as_before = std::ranges::any_of(scenario_.pipelines, [&](const Pipeline& each) {
-      return each.name == best_.pipeline &&
-             joined_stages(each, "+") == joined_stages(trial.pipeline, "+");
-    });
+    const bool is_as_before = joined_stages(best_, "+") == joined_stages(trial.pipeline, "+");
     std::vector<Override> sets = trial.sets;
     if (!is_as_before) {
       if (!keeps_name) trial.pipeline.name = joined_stages(trial.pipeline, "+");
@@ -417,6 +415,7 @@ class LeverSearch {
   const WorldFactory& make_world_;
   const LeverOptions& options_;
   const Progress& caller_;
+  const std::vector<RigChange> changes_;
   std::uint64_t screening_seeds_ = 0;
   std::uint64_t done_ = 0;  // runs before those that are under way
   std::uint64_t all_ = 0;   // runs, about

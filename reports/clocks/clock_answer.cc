@@ -7,6 +7,7 @@
 #include <string>
 
 #include "evaluation/answer/answer.h"
+#include "evaluation/clock_run/clock_causes.h"
 #include "recording/counted.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/results/results_answer.h"
@@ -70,9 +71,7 @@ std::string kind_of_error_sentence(const Row& row) {
 }
 
 std::string cause_sentence(const ClockCause& cause) {
-  const auto saved = [](double from, double to) { return from > 0 ? 1 - to / from : 0; };
-  const bool is_spread = saved(cause.spread_from_ms, cause.spread_to_ms) >=
-                         saved(cause.largest_from_ms, cause.largest_to_ms);
+  const bool is_spread = cause.spread_effect() >= cause.largest_effect();
   return fmt::format(
       "Without {}: {}.", cause.what,
       is_spread ? "mean spread " + time_change_text(cause.spread_from_ms, cause.spread_to_ms)
@@ -80,17 +79,26 @@ std::string cause_sentence(const ClockCause& cause) {
                       time_change_text(cause.largest_from_ms, cause.largest_to_ms));
 }
 
-// What limits it, by runs without each cause.
-std::string causes_text(const ClockCauses& causes) {
-  if (causes.tried.empty()) return "";
+std::string found_causes_text(const ClockCauses& causes) {
   if (causes.found.empty()) {
-    return fmt::format("Nothing alone, by 20 % or more: {}.", fmt::join(causes.tried, ", "));
+    return fmt::format("Nothing alone, by {:g} % or more: {}.", 100 * evaluation::kLeastEffect,
+                       fmt::join(causes.tried, ", "));
   }
   std::string text;
   for (std::size_t i = 0; i < std::min(kNamedCauses, causes.found.size()); ++i) {
     text += cause_sentence(causes.found[i]) + " ";
   }
   return fmt::format("{}(Means over {}.)", text, counted(causes.seeds, "seed"));
+}
+
+// Says what limits it, by runs without each cause.
+std::string causes_text(const ClockCauses& causes) {
+  if (causes.tried.empty()) return "";
+  std::string text = found_causes_text(causes);
+  if (!causes.refused.empty()) {
+    text += fmt::format(" Not tried: {}.", fmt::join(causes.refused, "; "));
+  }
+  return text;
 }
 
 std::string without_master_sentence(const Row& row) {

@@ -64,8 +64,9 @@ std::string levers_text(const Levers& levers, RankedBy ranked_by, std::uint64_t 
       levers.seeds < seeds_of_run ? fmt::format(" (over {})", counted(levers.seeds, "seed")) : "";
   if (!levers.problem.empty()) return fmt::format("It is not known: {}.", levers.problem);
   if (levers.effective.empty()) {
-    return fmt::format("Nothing that was tried improves it by 5 %{}: {} and {} of the rig.",
-                       of_seeds, counted(levers.algorithms, "other algorithm"),
+    return fmt::format("Nothing that was tried improves it by {:g} %{}: {} and {} of the rig.",
+                       100 * evaluation::kSmallestGain, of_seeds,
+                       counted(levers.algorithms, "other algorithm"),
                        counted(levers.changes, "change"));
   }
   std::string text;

@@ -38,8 +38,8 @@ constexpr std::uint64_t kWorldSeeds = 12;
 
 struct Said {
   Results results;
-  reports::ResultsAnswer answer;
-  std::string text;  // all of it, with labels
+  reports::ResultsAnswer answer{};
+  std::string text{};  // all of it, with labels
 };
 
 struct AnsweredWorld {

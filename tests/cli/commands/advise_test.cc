@@ -105,6 +105,37 @@ TEST_F(AdviseTest, RefusesOptionsThatMeanNothing) {
               HasSubstr("/hosts/nothing"));
 }
 
+TEST_F(AdviseTest, ATaskMayStateWhatItTolerates) {
+  const ProgramResult result = run(command("5mm at 2m/s exposed 1ms"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              HasSubstr("5mm at 2m/s exposed 1ms is taken as exposure_spread<=1.5ms and "
+                        "precision>=99%."));
+  EXPECT_THAT(refusal(command("5mm at 2")),
+              HasSubstr("--require: found '5mm at 2', allowed LENGTH"));
+}
+
+// Each Raspberry Pi is a host of its own; so is a camera of the user that says so.
+TEST_F(AdviseTest, CamerasMayBeSteered) {
+  const std::string mine = file("mine.json", R"({"part": "mine", "kind": "camera", "name": "Mine",
+    "prices": [], "price_source": "none", "source": "none", "world": "8cam_raspberry_30fps",
+    "is_host": true, "host_sync": ["chrony_lan"], "capture_alignment": ["rpi_sync"],
+    "device_time": ["host_stamps"]})");
+  const ProgramResult result =
+      run({"advise", "--require", "exposure_spread<100ms", "--camera", "mine", "--parts", mine,
+           "--cameras", "3", "--rate", "30", "--seeds", "2", "--set", "/timeline/frames=60",
+           "--set", "/timeline/warm_up_ms=1000"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("3 x mine, office_switch"));
+  EXPECT_THAT(result.out, HasSubstr("chrony_lan + rpi_sync + host_stamps + yoon2021"));
+  for (const std::string& camera : {std::string("raspberry_camera_v3"), std::string("mine")}) {
+    EXPECT_THAT(refusal(command("amd<1ms", {"--camera", camera, "--parts", mine})),
+                HasSubstr("--hosts: found '2', but each " + camera + " is a host of its own"));
+  }
+  EXPECT_THAT(refusal(command("amd<1ms", {"--camera", "webcam"})),
+              HasSubstr("--camera: found 'webcam', allowed: d455, gige_ace, oak_4, "));
+}
+
 TEST_F(AdviseTest, TakesPartsOfTheUser) {
   const std::string part =
       R"({"part": "cheap_pc", "kind": "host", "name": "n", "price_source": "p", "source": "s",

@@ -50,6 +50,20 @@ class ClocksCommand : public ProgramTest {
   }
 };
 
+TEST_F(ClocksCommand, SaysWhatCausedTheErrors) {
+  const std::vector<std::string> stepped = {
+      "--set", R"(/faults=[{"kind": "clock_step", "host": 0, "at_ms": 200000, "step_ms": 500}])"};
+  const ProgramResult result = clocks(stepped);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Causes: Without the step of a clock: "));
+  std::vector<std::string> as_json = stepped;
+  as_json.insert(as_json.end(), {"--format", "json"});
+  const auto causes = nlohmann::json::parse(clocks(as_json).out)["answer"]["causes"];
+  EXPECT_EQ(causes[0]["what"], "the step of a clock");
+  EXPECT_GT(causes[0]["largest_from_ms"], 499);
+  EXPECT_LT(causes[0]["largest_to_ms"], 499);
+}
+
 TEST_F(ClocksCommand, PrintsATable) {
   const ProgramResult result = clocks();
   EXPECT_EQ(result.status, 0) << result.err;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "tests/cli/program.h"
@@ -191,6 +192,30 @@ TEST_F(Run, LatexIsBalancedAndEscaped) {
       EXPECT_EQ(text[at - 1], '\\') << text.substr(at, 20);
     }
   }
+}
+
+// What it says to improve the best pipeline is what a user finds who does it.
+TEST_F(Run, ALeverIsTheRunThatItsOptionsMake) {
+  const std::vector<std::string> base = {"run", "--scenario", "18cam_6host_45fps",   "--seeds",
+                                         "8",   "--set",      "/timeline/frames=60", "--format",
+                                         "json"};
+  std::vector<std::string> first = base;
+  first.insert(first.end(), {"--pipelines", "yoon2021_both"});
+  const ProgramResult result = run(first);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json levers = Json::parse(result.out)["answer"]["levers"];
+  ASSERT_GT(levers.size(), 0U);
+  for (const Json& lever : levers) {
+    std::vector<std::string> again = base;
+    again.emplace_back("--no-levers");
+    std::istringstream options(lever["options"].get<std::string>());
+    for (std::string word; options >> word;) again.push_back(word);
+    const ProgramResult changed = run(again);
+    ASSERT_EQ(changed.status, 0) << changed.err;
+    EXPECT_EQ(Json::parse(changed.out)["rows"][0]["amd_ms"]["median"], lever["to"]) << lever;
+  }
+  const ProgramResult without = run(small({"--quiet", "--no-levers"}));
+  EXPECT_THAT(without.out, Not(HasSubstr("To improve it")));
 }
 
 TEST_F(Run, TheArchiveHoldsEverything) {

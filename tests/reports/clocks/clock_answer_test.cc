@@ -41,6 +41,10 @@ TEST(ClockAnswer, CausesAreFromOneValueToAnother) {
   EXPECT_THAT(text, HasSubstr("Without the step of a clock: largest error of a host from 140 s "
                               "to 10.0 us. (Means over 2 seeds.)"));
   EXPECT_THAT(text, Not(HasSubstr("Mostly constant")));
+  EXPECT_THAT(text, Not(HasSubstr("Not tried")));
+  results.causes.refused = {"noise: found 0, allowed more"};
+  EXPECT_THAT(whole_text(clock_answer(results)),
+              HasSubstr("Not tried: noise: found 0, allowed more."));
 }
 
 TEST(ClockAnswer, SaysThatClocksDoNotComeTogether) {
