@@ -75,8 +75,6 @@ class InterruptibleClocks : public ClockSource {
 }  // namespace
 
 InterruptHandler::InterruptHandler() {
-  interrupt_flag = false;
-  insistence_flag = false;
   struct sigaction action = {};
   action.sa_handler = [](int) {
     if (!interrupt_flag.exchange(true)) return;

@@ -5,9 +5,10 @@
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
-// A second SIGINT raises another flag, on which cli/interrupt_deadline.h ends the program at once;
-// a third does so itself. A program that has signal handlers of its own raises the flag in their
-// place.
+// The flag stays raised: a signal that came when one piece of work had already ended stops the next
+// one. A second SIGINT raises another flag, on which cli/interrupt_deadline.h ends the program at
+// once; a third does so itself. A program that has signal handlers of its own raises the flag in
+// their place.
 #pragma once
 
 #include <atomic>
