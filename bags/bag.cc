@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bags/byte_stream.h"
+#include "recording/byte_stream.h"
 
 namespace simbench::bags {
 namespace {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "bags/bag.h"
-#include "bags/byte_stream.h"
 #include "bags/damage_notes.h"
 #include "bags/fields.h"
 #include "bags/mcap_records.h"
+#include "recording/byte_stream.h"
 
 namespace simbench::bags {
 namespace {

@@ -17,7 +17,7 @@
 #include <string_view>
 
 #include "bags/bag.h"
-#include "bags/byte_stream.h"
+#include "recording/byte_stream.h"
 
 namespace simbench::bags {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bags/bag.h"
-#include "bags/byte_stream.h"
 #include "bags/damage_notes.h"
 #include "bags/rosbag_records.h"
+#include "recording/byte_stream.h"
 #include "recording/text_fields.h"
 
 namespace simbench::bags {

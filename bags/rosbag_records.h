@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "algorithms/ports/time.h"
-#include "bags/byte_stream.h"
+#include "recording/byte_stream.h"
 
 namespace simbench::bags {
 

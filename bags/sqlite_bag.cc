@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "bags/bag.h"
-#include "bags/byte_stream.h"
 #include "bags/damage_notes.h"
 #include "bags/fields.h"
+#include "recording/byte_stream.h"
 #include "scenarios/input_file.h"
 
 namespace simbench::bags {

@@ -83,6 +83,11 @@ Option& Option::at_most(int values) {
   return *this;
 }
 
+Option& Option::or_nothing() {
+  option_->expected(0, 1);
+  return *this;
+}
+
 Option& Option::needs(const Option& other) {
   option_->needs(other.option_);
   return *this;

@@ -54,6 +54,7 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
   Option& required();
   Option& at_most(int values);
+  Option& or_nothing();  // may stand without its value
   Option& needs(const Option& other);
   Option& excludes(const Option& other);
   bool given() const;  // once the command line is parsed

@@ -42,22 +42,24 @@ if(NOT SIMBENCH_UPLOT_DIR)
   message(FATAL_ERROR "uPlot: not found; run tools/setup")
 endif()
 
-# What bags are written with: SQLite 3.40 (rosbag2), LZ4 1.9, zstd 1.5, bzip2 1.0. Used inside bags/.
-function(simbench_find_bag_library name header)
+# What files of others are written with: SQLite 3.40 (rosbag2), LZ4 1.9, zstd 1.5, bzip2 1.0, zlib
+# 1.2. Used inside recording/ and bags/.
+function(simbench_find_file_library name header)
   string(TOUPPER ${name} upper)
   find_path(SIMBENCH_${upper}_INCLUDE_DIR ${header} HINTS ${SIMBENCH_DEPS_DIR}/usr/include NO_CACHE)
   find_library(SIMBENCH_${upper}_LIBRARY ${name} HINTS ${SIMBENCH_DEPS_DIR}/usr/lib NO_CACHE)
   if(NOT SIMBENCH_${upper}_INCLUDE_DIR OR NOT SIMBENCH_${upper}_LIBRARY)
     message(FATAL_ERROR "${header}: not found; run tools/setup")
   endif()
-  target_include_directories(simbench_bag_libraries SYSTEM INTERFACE
+  target_include_directories(simbench_file_libraries SYSTEM INTERFACE
     $<BUILD_INTERFACE:${SIMBENCH_${upper}_INCLUDE_DIR}>)
-  target_link_libraries(simbench_bag_libraries INTERFACE
+  target_link_libraries(simbench_file_libraries INTERFACE
     $<BUILD_INTERFACE:${SIMBENCH_${upper}_LIBRARY}> $<INSTALL_INTERFACE:${name}>)
 endfunction()
-add_library(simbench_bag_libraries INTERFACE)
-set_target_properties(simbench_bag_libraries PROPERTIES EXPORT_NAME bag_libraries)
-simbench_find_bag_library(sqlite3 sqlite3.h)
-simbench_find_bag_library(lz4 lz4frame.h)
-simbench_find_bag_library(zstd zstd.h)
-simbench_find_bag_library(bz2 bzlib.h)
+add_library(simbench_file_libraries INTERFACE)
+set_target_properties(simbench_file_libraries PROPERTIES EXPORT_NAME file_libraries)
+simbench_find_file_library(sqlite3 sqlite3.h)
+simbench_find_file_library(lz4 lz4frame.h)
+simbench_find_file_library(zstd zstd.h)
+simbench_find_file_library(bz2 bzlib.h)
+simbench_find_file_library(z zlib.h)

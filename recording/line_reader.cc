@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
 #include <utility>
+
+#include "scenarios/input_file.h"
 
 namespace simbench {
 namespace {
@@ -16,9 +17,9 @@ constexpr std::size_t kLongestLine = 32U << 20U;  // clock errors of a million h
   throw LineError(fmt::format("{}: cannot be read: {}", path, error.what()));
 }
 
-InputFile opened(const std::string& path) {
+TextFile opened(const std::string& path) {
   try {
-    return InputFile(path);
+    return TextFile(path);
   } catch (const FileError& error) {
     fail_to_read_lines(path, error);
   }
@@ -28,6 +29,9 @@ InputFile opened(const std::string& path) {
 
 LineReader::LineReader(std::string path)
     : path_(std::move(path)), file_(opened(path_)), buffer_(kBlock, '\0') {}
+
+LineReader::LineReader(std::string path, std::string_view text)
+    : path_(std::move(path)), buffer_(text), end_(buffer_.size()) {}
 
 std::optional<std::string_view> LineReader::next() {
   std::size_t searched = begin_;
@@ -45,33 +49,50 @@ std::optional<std::string_view> LineReader::next() {
       throw LineError(
           fmt::format("{}: longer than {} bytes, no line of a recording", place(), kLongestLine));
     }
-    if (at_end_ || !read_more()) return std::nullopt;
+    if (at_end_ || !read_more()) {
+      exhausted_ = true;
+      return std::nullopt;
+    }
     searched = begin_ + length;
   }
 }
 
 bool LineReader::read_more() {
-  if (begin_ > 0) {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
+  if (!file_) {
+    at_end_ = true;
+    return false;
+  }
+  const std::size_t unused = kept_.value_or(begin_);
+  if (unused > 0) {
+    std::memmove(buffer_.data(), buffer_.data() + unused, end_ - unused);
+    begin_ -= unused;
+    end_ -= unused;
+    if (kept_) kept_ = 0;
   }
   if (end_ == buffer_.size()) buffer_.resize(buffer_.size() * 2);
   std::size_t size = 0;
   try {
-    size = file_.read(buffer_.data() + end_, buffer_.size() - end_);
+    size = file_->read(buffer_.data() + end_, buffer_.size() - end_);
   } catch (const FileError& error) {
     fail_to_read_lines(path_, error);
   }
   end_ += size;
-  bytes_read_ += size;
   at_end_ = size == 0;
-  if (torn()) ++line_;
   return !at_end_;
 }
 
-std::string LineReader::place() const {
-  return fmt::format("{}:{}", path_, std::max<std::size_t>(line_, 1));
+void LineReader::mark() {
+  kept_ = begin_;
+  kept_line_ = line_;
 }
+
+void LineReader::rewind() {
+  begin_ = *kept_;
+  line_ = kept_line_;
+  kept_.reset();
+  exhausted_ = false;
+}
+
+std::string LineReader::place() const { return fmt::format("{}:{}", path_, line()); }
 
 }  // namespace simbench

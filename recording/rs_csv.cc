@@ -1,50 +1,33 @@
 #include "recording/rs_csv.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <system_error>
 #include <utility>
 
+#include "recording/counted.h"
+#include "recording/date_time.h"
 #include "recording/line_reader.h"
 #include "recording/number_in.h"
+#include "recording/table.h"
 #include "recording/text_fields.h"
 
 namespace simbench {
 namespace {
 
 constexpr const char* kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)";
-constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
+constexpr std::size_t kHeaderLines = 200;  // the header stands in the first ones
 
-constexpr std::array<std::string_view, kCsvFields> kFieldNames = {
-    "stream", "index", "counter", "sensor", "arrival", "camera", "host"};
+// What rs-data-collect calls its columns, by field; the last two are optional.
+constexpr std::array<std::string_view, kCsvFields> kUsualNames = {
+    "streamtype", "index", "f#", "hwtimestamp(ms)", "hosttimestamp(ms)", "camera", "host"};
+constexpr std::size_t kUsualFields = 5;
 
-struct Unit {
-  std::string_view name;
-  int exponent;  // of ten, to milliseconds
-};
-constexpr std::array<Unit, 4> kUnits = {{{"ns", -6}, {"us", -3}, {"ms", 0}, {"s", 3}}};
-
-// Returns the columns that rs-data-collect writes.
-const RecordingColumns& usual_columns() {
-  static const RecordingColumns columns{{{{"Stream Type"},
-                                          {"Index"},
-                                          {"F#"},
-                                          {"HW Timestamp (ms)"},
-                                          {"Host Timestamp(ms)"},
-                                          {"camera"},
-                                          {"host"}}}};
-  return columns;
-}
-
-struct Header {
-  std::array<std::size_t, kCsvFields> position = {};
-  char separator = ',';
-  std::size_t cells = 0;         // of the header itself; a line with more has decimal commas
-  std::size_t cells_needed = 0;  // a line with fewer is truncated
-};
+using Positions = std::array<std::optional<std::size_t>, kCsvFields>;
 
 // A place in the text, for messages.
 struct CsvPlace {
@@ -56,129 +39,70 @@ struct CsvPlace {
   }
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
-  cells.clear();
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(separator, begin), line.size());
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-}
-
-// The plain name: blanks and capitals differ between versions of the tool.
-std::string plain_name(std::string_view cell) {
-  std::string name;
-  for (const char c : cell) {
-    if (c == ' ') continue;
-    name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  }
-  return name;
-}
-
-// Whether a file must have the column: rs-data-collect writes five, others those that are named.
-bool is_required(const RecordingColumns& columns, CsvField field, bool usual) {
-  if (usual) return field != CsvField::kCamera && field != CsvField::kHost;
-  return !columns.of(field).name.empty();
+std::vector<std::string_view> cells_at_commas(std::string_view line,
+                                              std::deque<std::string>& unquoted) {
+  std::vector<std::string_view> cells;
+  split_row(line, ',', cells, unquoted);
+  return cells;
 }
 
 // Nothing if it is no header.
-std::optional<Header> parse_header(const std::vector<std::string_view>& cells,
-                                   const RecordingColumns& columns, bool usual,
-                                   const CsvPlace& place) {
-  Header header;
-  header.cells = cells.size();
-  header.position.fill(kAbsent);
+std::optional<Positions> usual_positions(const std::vector<std::string_view>& cells,
+                                         const CsvPlace& place) {
+  Positions found;
   std::optional<std::size_t> repeated;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string plain = plain_column_name(cells[i]);
     for (std::size_t field = 0; field < kCsvFields; ++field) {
-      const std::string& name = columns.columns[field].name;
-      if (name.empty() || plain_name(cells[i]) != plain_name(name)) continue;
-      if (header.position[field] != kAbsent) repeated = i;
-      header.position[field] = i;
-      header.cells_needed = i + 1;
+      if (plain != kUsualNames[field]) continue;
+      if (found[field]) repeated = i;
+      found[field] = i;
     }
   }
-  for (std::size_t field = 0; field < kCsvFields; ++field) {
-    if (header.position[field] == kAbsent &&
-        is_required(columns, static_cast<CsvField>(field), usual)) {
-      return std::nullopt;
-    }
+  for (std::size_t field = 0; field < kUsualFields; ++field) {
+    if (!found[field]) return std::nullopt;
   }
   if (repeated) place.fail("found the column " + quoted_bytes(cells[*repeated]) + " twice");
-  return header;
+  return found;
 }
 
-// Finds the separator of a header, whatever its columns.
-char separator_of(std::string_view line) {
-  char best = ',';
-  for (const char candidate : {';', '\t'}) {
-    if (std::count(line.begin(), line.end(), candidate) >
-        std::count(line.begin(), line.end(), best)) {
-      best = candidate;
-    }
-  }
-  return best;
-}
-
-bool is_header_again(const std::vector<std::string_view>& cells, const Header& header,
-                     const RecordingColumns& columns, bool usual) {
-  const CsvField field = usual ? CsvField::kStream : CsvField::kSensor;
-  const std::size_t position = usual ? 0 : header.position[static_cast<std::size_t>(field)];
-  return position < cells.size() &&
-         plain_name(cells[position]) == plain_name(columns.of(field).name);
-}
+bool is_preamble(std::string_view line) { return line.starts_with("Configuration"); }
 
 bool is_motion(std::string_view stream) {
   return stream == "Gyro" || stream == "Accel" || stream == "Pose";
 }
 
-// The number times a power of ten, digit by digit: a double would lose some. Nothing if the text is
-// no plain decimal number.
-std::optional<std::string> shifted(std::string_view text, int exponent) {
-  const bool negative = text.starts_with('-');
-  if (negative) text.remove_prefix(1);
-  const std::size_t point = std::min(text.find('.'), text.size());
-  std::string digits(text.substr(0, point));
-  std::string fraction(text.substr(std::min(point + 1, text.size())));
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  if (digits.empty() || !std::ranges::all_of(digits, is_digit) ||
-      !std::ranges::all_of(fraction, is_digit)) {
-    return std::nullopt;
-  }
-  for (; exponent > 0; --exponent) {
-    digits += fraction.empty() ? '0' : fraction.front();
-    fraction.erase(0, fraction.empty() ? 0 : 1);
-  }
-  for (; exponent < 0; ++exponent) {
-    fraction.insert(0, 1, digits.empty() ? '0' : digits.back());
-    if (!digits.empty()) digits.pop_back();
-  }
-  return (negative ? "-" : "") + (digits.empty() ? "0" : digits) + "." + fraction + "0";
-}
-
-Nanoseconds stamp_of(std::string_view cell, const RecordingColumns::Column& column,
+Nanoseconds stamp_of(std::string_view cell, const ResolvedColumns::Stamps& column,
                      const CsvPlace& place) {
-  std::optional<Nanoseconds> stamp;
-  if (column.exponent == 0) {
-    stamp = parse_ms(cell, kLargestStampMs);
-  } else if (const auto ms = shifted(cell, column.exponent)) {
-    stamp = parse_ms(*ms, kLargestStampMs);
-  }
-  if (stamp) return *stamp;
+  std::optional<Nanoseconds> stamp = column.unit == kMillisecondUnit
+                                         ? parse_ms(cell, kLargestStampMs)
+                                         : time_in(cell, column.unit);
+  if (!stamp) stamp = date_time_in(cell);
+  if (stamp && std::abs(stamp->count()) <= kLargestStampMs * 1'000'000) return *stamp;
   place.fail(column.name + ": found " + quoted_bytes(cell) + ", allowed: a number of " +
-             (column.exponent == 0 ? "milliseconds up to 4e12" : "its unit, up to 126 years"));
+             unit_text(column.unit) + " up to 126 years, or a time such as 2024-09-03T10:32:22Z");
 }
 
-std::uint64_t counter_of(std::string_view cell, const std::string& column, const CsvPlace& place) {
+// A counter that numpy wrote as a double is whole all the same.
+std::uint64_t counter_of(std::string_view cell, const CsvPlace& place) {
+  constexpr double kExact = 9e15;
   if (const auto counter = number_in<std::uint64_t>(cell)) return *counter;
-  place.fail(column + ": found " + quoted_bytes(cell) + ", allowed: a whole number");
+  const std::optional<double> value = number_in<double>(cell);
+  if (value && *value >= 0 && *value <= kExact && *value == std::floor(*value)) {
+    return static_cast<std::uint64_t>(*value);
+  }
+  place.fail("counter: found " + quoted_bytes(cell) + ", allowed: a whole number");
+}
+
+ResolvedColumns usual_columns(const Positions& positions) {
+  const auto stamps = [&](CsvField field, const char* name) {
+    return ResolvedColumns::Stamps{.name = name,
+                                   .position = *positions[static_cast<std::size_t>(field)],
+                                   .unit = kMillisecondUnit};
+  };
+  return {.position = positions,
+          .sensors = {stamps(CsvField::kSensor, "HW Timestamp (ms)")},
+          .arrival = stamps(CsvField::kArrival, "Host Timestamp(ms)")};
 }
 
 }  // namespace
@@ -186,142 +110,218 @@ std::uint64_t counter_of(std::string_view cell, const std::string& column, const
 // One file as it is read, line by line.
 class CsvRecordingReader::File {
  public:
-  File(CsvRecordingReader& reader, const std::string& path, std::string name)
-      : reader_(reader),
-        columns_(reader.columns_ ? *reader.columns_ : usual_columns()),
-        place_{.path = path},
-        name_(std::move(name)) {
+  File(CsvRecordingReader& reader, const std::string& path, std::string name,
+       const ReadProgress& progress)
+      : reader_(reader), place_{.path = path}, name_(std::move(name)), progress_(progress) {
     if (name_.empty()) name_ = std::filesystem::path(path).stem().string();
   }
 
-  void read_line(std::string_view line);
-  // After the last line; `torn`: bytes without a line end follow.
-  void end(bool torn);
+  void read(LineReader lines);
 
  private:
-  bool is_usual() const { return !reader_.columns_; }
-  bool take_header(std::string_view line);
-  [[noreturn]] void fail_header(std::string_view line) const;
-  void check_cells() const;
-  StampedFrame frame(std::uint64_t order) const;
-  RecordedStream& stream_of(std::string_view camera, std::string_view host);
+  using Cells = std::vector<std::string_view>;
+
+  bool is_usual(LineReader& lines) const;
+  void read_usual(LineReader& lines);
+  void read_usual_line(std::string_view line);
+  void read_table(LineReader lines);
+  void read_row(const Cells& cells);
+  void check_width(const Cells& cells, std::size_t fewest, std::size_t most) const;
+  void add_frame(const Cells& cells, std::string_view camera, std::string_view host,
+                 const ResolvedColumns::Stamps& sensor);
+  void report(const LineReader& lines);
+  void end(bool torn, bool empty);
+  void note(const std::string& text) { reader_.notes_.push_back(place_.path + ": " + text); }
+
+  RecordedStream& stream_of(std::string_view camera, std::string_view host, const Cells& cells);
   const Naming& naming_of(std::string_view camera, std::string_view host);
   void check_naming(const Naming& naming, std::string_view camera, std::string_view host) const;
 
   bool has(CsvField field) const {
-    return header_->position[static_cast<std::size_t>(field)] != kAbsent;
+    return columns_.position[static_cast<std::size_t>(field)].has_value();
   }
-  std::string_view cell(CsvField field) const {
-    return cells_[header_->position[static_cast<std::size_t>(field)]];
+  std::string_view cell(const Cells& cells, CsvField field) const {
+    return cells[*columns_.position[static_cast<std::size_t>(field)]];
   }
   // "Depth 0"; "frame" where no column says it.
-  std::string stream_name() const {
+  std::string stream_name(const Cells& cells) const {
     if (!has(CsvField::kStream)) return "frame";
-    std::string name(cell(CsvField::kStream));
-    if (has(CsvField::kIndex)) name.append(" ").append(cell(CsvField::kIndex));
+    std::string name(cell(cells, CsvField::kStream));
+    if (has(CsvField::kIndex)) name.append(" ").append(cell(cells, CsvField::kIndex));
     return name;
   }
-  bool is_motion_line() const { return is_usual() && is_motion(cell(CsvField::kStream)); }
 
   CsvRecordingReader& reader_;
-  const RecordingColumns& columns_;
   CsvPlace place_;
   std::string name_;
-  std::optional<Header> header_;
+  const ReadProgress& progress_;
+  std::uint64_t reported_ = 0;
+  ResolvedColumns columns_{};
+  std::size_t width_ = 0;  // cells of a row
   bool preamble_ = false;
   bool any_frame_ = false;
-  std::vector<std::string_view> cells_;
-  std::string key_;
+  std::uint64_t missing_ = 0;
+  std::size_t first_missing_ = 0;  // its line
+  std::deque<std::string> unquoted_{};
+  std::string key_{};
 };
 
-void CsvRecordingReader::File::read_line(std::string_view line) {
-  if (++place_.line == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
-  line = trimmed(line);
-  if (line.empty()) return;
-  split(line, header_ ? header_->separator : is_usual() ? ',' : separator_of(line), cells_);
-  if ((!header_ || is_header_again(cells_, *header_, columns_, is_usual())) && take_header(line))
-    return;
-  check_cells();
-  if (is_motion_line()) return;
-  const std::string_view camera = has(CsvField::kCamera) ? cell(CsvField::kCamera) : name_;
-  const std::string_view host = has(CsvField::kHost) ? cell(CsvField::kHost) : name_;
-  if (camera.empty() || host.empty() ||
-      (has(CsvField::kStream) && cell(CsvField::kStream).empty())) {
-    place_.fail("found an empty cell, allowed: the name of a stream, camera or host");
+void CsvRecordingReader::File::read(LineReader lines) {
+  bool usual = false;
+  if (!reader_.columns_) {
+    lines.mark();
+    usual = is_usual(lines);
+    lines.rewind();
   }
-  RecordedStream& stream = stream_of(camera, host);
-  stream.frames.push_back(frame(stream.frames.size()));
+  if (usual) {
+    read_usual(lines);
+  } else {
+    read_table(std::move(lines));
+  }
+}
+
+// By its header, or by what stands before it.
+bool CsvRecordingReader::File::is_usual(LineReader& lines) const {
+  for (std::size_t i = 0; i < kHeaderLines; ++i) {
+    const std::optional<std::string_view> line = lines.next();
+    if (!line) return false;
+    if (is_preamble(*line)) return true;
+    std::deque<std::string> unquoted;
+    if (usual_positions(cells_at_commas(*line, unquoted), {place_.path, lines.line()})) return true;
+  }
+  return false;
+}
+
+void CsvRecordingReader::File::read_usual(LineReader& lines) {
+  bool empty = true;
+  while (const auto line = lines.next()) {
+    empty = false;
+    place_.line = lines.line();
+    read_usual_line(*line);
+    report(lines);
+  }
+  place_.line = lines.line();
+  end(lines.torn(), empty);
+}
+
+void CsvRecordingReader::File::read_usual_line(std::string_view line) {
+  unquoted_.clear();
+  const Cells cells = cells_at_commas(line, unquoted_);
+  if (cells.size() == 1 && cells.front().empty()) return;
+  if (width_ == 0 || plain_column_name(cells.front()) == kUsualNames.front()) {
+    if (const auto positions = usual_positions(cells, place_)) {
+      columns_ = usual_columns(*positions);
+      width_ = cells.size();
+      return;
+    }
+    preamble_ = width_ == 0 && (preamble_ || is_preamble(line));
+    if (preamble_) return;
+    place_.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader);
+  }
+  std::size_t fewest = 0;
+  for (const auto& position : columns_.position) {
+    if (position) fewest = std::max(fewest, *position + 1);
+  }
+  // Motion has more values than older versions of the tool have columns.
+  const bool motion = cells.size() >= fewest && is_motion(cell(cells, CsvField::kStream));
+  check_width(cells, fewest, motion ? cells.size() : width_);
+  if (!motion) read_row(cells);
+}
+
+void CsvRecordingReader::File::read_table(LineReader lines) {
+  TableReader table(std::move(lines));
+  place_.line = 1;
+  if (table.first_row().empty()) end(table.torn(), table.heading().empty());
+  std::vector<std::string> notes;
+  columns_ =
+      reader_.columns_ ? resolve(*reader_.columns_, table, notes) : found_columns(table, notes);
+  for (const std::string& text : notes) note(text);
+  width_ = std::max(table.heading().size(), table.first_row().size());
+  while (const Cells* cells = table.next()) {
+    place_.line = table.line();
+    check_width(*cells, width_, width_);
+    read_row(*cells);
+    report(table.lines());
+  }
+  if (table.torn()) place_.line = table.lines().line();
+  end(table.torn(), false);
+}
+
+void CsvRecordingReader::File::report(const LineReader& lines) {
+  constexpr std::uint64_t kProgressBytes = std::uint64_t{1} << 20;
+  if (!progress_ || lines.bytes_read() - reported_ < kProgressBytes) return;
+  reported_ = lines.bytes_read();
+  progress_(reported_, lines.size());
+}
+
+void CsvRecordingReader::File::check_width(const Cells& cells, std::size_t fewest,
+                                           std::size_t most) const {
+  if (cells.size() < fewest) {
+    place_.fail("found " + std::to_string(cells.size()) +
+                " cells, allowed: " + (most > fewest ? "at least " : "") + std::to_string(fewest) +
+                "; is the line complete?");
+  }
+  if (cells.size() > most) {
+    place_.fail("found " + std::to_string(cells.size()) + " cells, allowed: " +
+                std::to_string(most) + ", as in the header; do the numbers have decimal commas?");
+  }
+}
+
+void CsvRecordingReader::File::read_row(const Cells& cells) {
+  const std::string_view host = has(CsvField::kHost) ? cell(cells, CsvField::kHost) : name_;
+  for (const ResolvedColumns::Stamps& sensor : columns_.sensors) {
+    const bool named = columns_.sensors.size() > 1;
+    const std::string_view camera = has(CsvField::kCamera) ? cell(cells, CsvField::kCamera)
+                                    : named                ? std::string_view(sensor.name)
+                                                           : std::string_view(name_);
+    if (camera.empty() || host.empty() ||
+        (has(CsvField::kStream) && cell(cells, CsvField::kStream).empty())) {
+      place_.fail("found an empty cell, allowed: the name of a stream, camera or host");
+    }
+    add_frame(cells, camera, host, sensor);
+  }
+}
+
+void CsvRecordingReader::File::add_frame(const Cells& cells, std::string_view camera,
+                                         std::string_view host,
+                                         const ResolvedColumns::Stamps& sensor) {
+  const bool without_arrival =
+      columns_.arrival && is_missing_cell(cells[columns_.arrival->position]);
+  if (is_missing_cell(cells[sensor.position]) || without_arrival) {
+    if (missing_++ == 0) first_missing_ = place_.line;
+    return;
+  }
+  RecordedStream& stream = stream_of(camera, host, cells);
+  StampedFrame frame;
+  frame.counter = has(CsvField::kCounter) ? counter_of(cell(cells, CsvField::kCounter), place_)
+                                          : stream.frames.size();
+  frame.sensor = stamp_of(cells[sensor.position], sensor, place_);
+  frame.arrival = columns_.arrival
+                      ? stamp_of(cells[columns_.arrival->position], *columns_.arrival, place_)
+                      : frame.sensor;
+  stream.frames.push_back(frame);
   any_frame_ = true;
 }
 
-StampedFrame CsvRecordingReader::File::frame(std::uint64_t order) const {
-  StampedFrame frame;
-  const std::string& name = columns_.of(CsvField::kCounter).name;
-  frame.counter =
-      has(CsvField::kCounter) ? counter_of(cell(CsvField::kCounter), name, place_) : order;
-  const RecordingColumns::Column& sensor = columns_.of(CsvField::kSensor);
-  frame.sensor = stamp_of(cell(CsvField::kSensor), sensor, place_);
-  if (frame.sensor < Nanoseconds::zero()) {
-    place_.fail(sensor.name + ": found " + quoted_bytes(cell(CsvField::kSensor)) +
-                ", allowed: 0 or more");
-  }
-  frame.arrival = stamp_of(cell(CsvField::kArrival), columns_.of(CsvField::kArrival), place_);
-  return frame;
-}
-
-void CsvRecordingReader::File::end(bool torn) {
+void CsvRecordingReader::File::end(bool torn, bool empty) {
   if (torn) {
-    ++place_.line;
     reader_.notes_.push_back(place_.path + ":" + std::to_string(place_.line) +
                              ": the last line has no line end and may be cut; it was left out");
   }
-  if (place_.line == 0) {
-    throw CsvError(place_.path + ":1: the file is empty, allowed: the header " + kHeader);
+  if (empty && !torn) {
+    throw CsvError(place_.path + ":1: the file is empty, allowed: the header " + kHeader +
+                   ", or a table of stamps");
+  }
+  if (missing_ > 0) {
+    note(counted(missing_, "cell") + " without a stamp left out, the first in line " +
+         std::to_string(first_missing_));
   }
   if (!any_frame_) place_.fail("the file ends without a frame");
 }
 
-// False for a line that is neither a header nor before one.
-bool CsvRecordingReader::File::take_header(std::string_view line) {
-  const char separator = is_usual() ? ',' : separator_of(line);
-  header_ = parse_header(cells_, columns_, is_usual(), place_);
-  if (header_) header_->separator = separator;
-  preamble_ = !header_ && is_usual() && (preamble_ || line.starts_with("Configuration"));
-  if (header_ || preamble_) return true;
-  fail_header(line);
-}
-
-void CsvRecordingReader::File::fail_header(std::string_view line) const {
-  if (is_usual()) {
-    place_.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader +
-                ", or --columns sensor=COLUMN,arrival=COLUMN for columns of other names");
-  }
-  std::string missing;
-  for (const RecordingColumns::Column& column : columns_.columns) {
-    const bool there = std::any_of(cells_.begin(), cells_.end(), [&](std::string_view cell) {
-      return plain_name(cell) == plain_name(column.name);
-    });
-    if (!column.name.empty() && !there) missing += (missing.empty() ? "" : ", ") + column.name;
-  }
-  place_.fail("found no column " + quoted_bytes(missing) + " in the header " + quoted_bytes(line));
-}
-
-void CsvRecordingReader::File::check_cells() const {
-  if (cells_.size() < header_->cells_needed) {
-    place_.fail("found " + std::to_string(cells_.size()) + " cells, allowed: at least " +
-                std::to_string(header_->cells_needed) + "; is the line complete?");
-  }
-  // Motion has more values than older versions of the tool have columns.
-  if (cells_.size() > header_->cells && !is_motion_line()) {
-    place_.fail("found " + std::to_string(cells_.size()) +
-                " cells, allowed: " + std::to_string(header_->cells) +
-                ", as in the header; do the numbers have decimal commas?");
-  }
-}
-
-RecordedStream& CsvRecordingReader::File::stream_of(std::string_view camera,
-                                                    std::string_view host) {
-  const std::string name = stream_name();
+RecordedStream& CsvRecordingReader::File::stream_of(std::string_view camera, std::string_view host,
+                                                    const Cells& cells) {
+  const std::string name = stream_name(cells);
   key_.assign(camera).append(",").append(name);
   auto known = reader_.index_.find(key_);
   if (known == reader_.index_.end()) {
@@ -365,65 +365,19 @@ void CsvRecordingReader::File::check_naming(const Naming& naming, std::string_vi
 
 void CsvRecordingReader::read_file(const std::string& path, const std::string& name,
                                    const ReadProgress& progress) {
-  constexpr std::uint64_t kProgressBytes = std::uint64_t{1} << 20;
   try {
-    LineReader lines(path);
-    File file(*this, path, name);
-    std::uint64_t reported = 0;
-    while (const auto line = lines.next()) {
-      file.read_line(*line);
-      if (!progress || lines.bytes_read() - reported < kProgressBytes) continue;
-      reported = lines.bytes_read();
-      progress(reported, lines.size());
-    }
-    file.end(lines.torn());
+    File(*this, path, name, progress).read(LineReader(path));
   } catch (const LineError& error) {
     throw CsvError(error.what());
   }
 }
 
 void CsvRecordingReader::read_text(std::string_view text, const std::string& path) {
-  File file(*this, path, {});
-  std::size_t end = 0;
-  while ((end = text.find('\n')) != std::string_view::npos) {
-    file.read_line(text.substr(0, end));
-    text.remove_prefix(end + 1);
+  try {
+    File(*this, path, {}, {}).read(LineReader(path, text));
+  } catch (const LineError& error) {
+    throw CsvError(error.what());
   }
-  file.end(!text.empty());
-}
-
-RecordingColumns RecordingColumns::parse(const std::string& text) {
-  const auto fail = [](std::string_view found) {
-    throw CsvError("--columns: found " + quoted_bytes(found) +
-                   ", allowed: FIELD=COLUMN or FIELD=COLUMN:UNIT with commas between them; fields "
-                   "stream, index, counter, sensor, arrival, camera, host; units ns, us, ms, s");
-  };
-  RecordingColumns parsed;
-  std::vector<std::string_view> parts;
-  split(text, ',', parts);
-  for (const std::string_view part : parts) {
-    const std::size_t equals = part.find('=');
-    const auto* field = std::find(kFieldNames.begin(), kFieldNames.end(), part.substr(0, equals));
-    if (equals == std::string_view::npos || field == kFieldNames.end()) fail(part);
-    Column& column = parsed.columns[static_cast<std::size_t>(field - kFieldNames.begin())];
-    std::string_view name = part.substr(equals + 1);
-    const std::size_t colon = name.rfind(':');
-    if (colon != std::string_view::npos) {
-      const auto* unit = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& known) {
-        return known.name == name.substr(colon + 1);
-      });
-      if (unit == kUnits.end()) fail(part);
-      column.exponent = unit->exponent;
-      name = name.substr(0, colon);
-    }
-    if (name.empty() || !column.name.empty()) fail(part);
-    column.name = std::string(name);
-  }
-  if (parsed.of(CsvField::kSensor).name.empty() || parsed.of(CsvField::kArrival).name.empty()) {
-    throw CsvError("--columns: found " + quoted_bytes(text) +
-                   ", allowed: at least sensor=COLUMN and arrival=COLUMN");
-  }
-  return parsed;
 }
 
 std::vector<RecordedStream> CsvRecordingReader::take() {

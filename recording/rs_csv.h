@@ -14,13 +14,15 @@
 // that files name in a column continues in the order of the files. Stamps of several cameras must
 // count from one zero per host, and, for a meaningful spread, from one for all hosts.
 //
-// RecordingColumns reads files of any other tool: which column is what, and in which unit. Its
-// cells may be separated by commas, semicolons or tabs, whichever the header has most of. Without a
-// column for the counter frames count as they come; without one for the stream, it is "frame".
+// Tables of any other tool (recording/table.h) are read by RecordingColumns, or, where nothing is
+// said, by what they show (recording/recording_columns.h): one row a frame, or one a set of frames
+// with a column of stamps for each camera. Without a column for the counter frames count as they
+// come; without one for the stream, it is "frame"; without one for the arrival, the stamps stand
+// for it. Rows without a stamp (empty, NaN) are left out and counted.
 //
-// What may be wrong is refused, with its line: more or fewer cells than the header has (a decimal
-// comma), a column that stands twice, a camera on two hosts. A last line without its line end may
-// be cut in mid-number: it is left out, with a note. Names have control characters as \xHH.
+// What may be wrong is refused, with its line: more or fewer cells than the header has, a column
+// that stands twice, a camera on two hosts. A last line without its line end may be cut in
+// mid-number: it is left out, with a note. Names have control characters as \xHH.
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped here.
 // Complexity: linear in the text; memory: that of the frames. Source: docs/reference/d455.md
@@ -43,39 +45,16 @@
 #include <vector>
 
 #include "recording/recorded_streams.h"
+#include "recording/recording_columns.h"
 
 namespace simbench {
-
-// A file that is no such recording. what() is the message for the user, "FILE:LINE: ...".
-class CsvError : public RecordedFileError {
- public:
-  using RecordedFileError::RecordedFileError;
-};
 
 // Largest stamp, in milliseconds either way: 126 years.
 inline constexpr std::int64_t kLargestStampMs = 4'000'000'000'000;
 
-enum class CsvField : std::uint8_t { kStream, kIndex, kCounter, kSensor, kArrival, kCamera, kHost };
-inline constexpr std::size_t kCsvFields = 7;
-
-// Which columns of a file are what.
-struct RecordingColumns {
-  struct Column {
-    std::string name{};  // as in the header; blanks and capitals do not matter; empty: none
-    int exponent = 0;    // of ten, from its unit to milliseconds
-  };
-  std::array<Column, kCsvFields> columns{};
-
-  // From "sensor=t_cam:us,arrival=t_host:ns,counter=seq": of stream, index, counter, sensor,
-  // arrival, camera and host, the units ns, us, ms (the default) and s. Throws CsvError:
-  // "--columns: ...", also if the sensor's or the arrival's is missing.
-  static RecordingColumns parse(const std::string& text);
-  const Column& of(CsvField field) const { return columns[static_cast<std::size_t>(field)]; }
-};
-
 class CsvRecordingReader {
  public:
-  // Reads the columns that rs-data-collect writes.
+  // Reads what rs-data-collect writes, and other tables as they show.
   CsvRecordingReader() = default;
   explicit CsvRecordingReader(RecordingColumns columns) : columns_(std::move(columns)) {}
 

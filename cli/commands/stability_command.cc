@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "evaluation/stability/log_stability.h"
+#include "recording/date_time.h"
+#include "recording/number_in.h"
 #include "reports/stability/stability_report.h"
 
 namespace simbench::cli {
@@ -13,16 +17,19 @@ constexpr double kShortestIntervalS = 1e-6;
 constexpr double kLongestIntervalS = 1e9;
 
 constexpr const char* kStabilityExamples = R"(
-Takes what other programs have measured, and recognises it by content: CSV (seconds, time error),
-tracking.log and statistics.log of chrony, the output of ptp4l and phc2sys, loopstats of ntpd. Gives
-Allan, modified Allan, Hadamard and time deviation, MTIE and the size of the time error, over
-octaves of tau. Gaps are kept apart, never interpolated; steps are named.
+Takes what other programs have measured, and recognises it by content: tables of time and time error
+(CSV), and the logs of ptp4l, phc2sys, ts2phc, chrony, ntpd, sntp, ntpshmmon, w32tm,
+systemd-timesyncd and ptpd, behind any head (syslog, journalctl, Docker, Kubernetes), compressed or
+not; - is standard input. Gives Allan, modified Allan, Hadamard and time deviation, MTIE and the size
+of the time error, over octaves of tau. Gaps are kept apart, never interpolated; steps are named, and
+a start before the clock was set. docs/files.md has a command for each form.
 
 Examples:
   simbench stability /var/log/chrony/tracking.log
-  simbench stability ptp4l.txt phc2sys.txt --remove-frequency
+  journalctl -u ptp4l | simbench stability - --locked
+  simbench stability syslog --series
   simbench stability errors.csv --unit ns --format json > stability.json
-  simbench stability statistics.log --series 203.0.113.15
+  simbench stability phase.txt --tau0 1 --remove-frequency
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
 
@@ -30,23 +37,57 @@ struct StabilityOptions {
   std::vector<std::string> files;
   std::string format;
   std::string unit;
-  std::string series;
+  std::string time_unit;
+  std::string from;
+  std::string until;
+  evaluation::ClockLogOptions log;
   evaluation::LogStabilityOptions stability;
 };
 
-std::optional<evaluation::ErrorUnit> unit_named(const std::string& name) {
-  if (name == "s") return evaluation::ErrorUnit::kS;
-  if (name == "ms") return evaluation::ErrorUnit::kMs;
-  if (name == "us") return evaluation::ErrorUnit::kUs;
-  if (name == "ns") return evaluation::ErrorUnit::kNs;
-  return std::nullopt;
+std::optional<TimeUnit> unit_of(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<TimeUnit> unit = unit_named(text);
+  if (!unit) refuse(option, fmt::format("found '{}', allowed: {}", text, kUnitsText));
+  return unit;
+}
+
+std::optional<evaluation::LogTime> time_of(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (const auto time = date_time_in(text)) {
+    return evaluation::LogTime{1e-9 * static_cast<double>(time->count()), false};
+  }
+  const std::optional<double> seconds = number_in<double>(text);
+  if (!seconds) {
+    refuse(option, fmt::format("found '{}', allowed: seconds since the first point, or a time such "
+                               "as 2024-09-03T10:32:22Z",
+                               text));
+  }
+  return evaluation::LogTime{*seconds, true};
+}
+
+void check_options(StabilityOptions& options) {
+  options.log.unit = unit_of("--unit", options.unit);
+  options.log.time_unit = unit_of("--time-unit", options.time_unit);
+  options.log.interval_s = options.stability.interval_s;
+  options.stability.from = time_of("--from", options.from);
+  options.stability.until = time_of("--until", options.until);
+}
+
+int list_series(const StabilityOptions& options) {
+  std::vector<reports::LogSeriesOfFile> found;
+  for (const std::string& file : options.files) {
+    found.push_back({file, evaluation::clock_log_series(file, options.log)});
+  }
+  print_result(options.format == "json" || options.format == "csv"
+                   ? reports::log_series_json(found)
+                   : reports::drawn_as(options.format, reports::log_series_document(found)));
+  return kOk;
 }
 
 int run_stability(const StabilityOptions& options) {
   std::vector<evaluation::LogStability> found;
   for (const std::string& file : options.files) {
-    const evaluation::ClockLog log = evaluation::read_clock_log(
-        file, {.unit = unit_named(options.unit), .series = options.series});
+    const evaluation::ClockLog log = evaluation::read_clock_log(file, options.log);
     found.push_back(evaluation::stability_of_log(log, options.stability));
   }
   for (const evaluation::LogStability& file : found) {
@@ -66,19 +107,40 @@ void add_stability_command(CommandLine& line) {
   Command command(line, "stability",
                   "How stable a measured clock is: ADEV, TDEV, MTIE, time error");
   command.texts("files", "FILE...", options->files, "Logs of clocks, one clock each").required();
-  command.word("--unit", "UNIT", options->unit, {"s", "ms", "us", "ns"},
-               "Unit of the time errors of CSV files. Default: what the column's name ends in "
-               "(error_ms), else s");
-  command.text("--series", "NAME", options->series,
-               "Which series of a file that has several: a column of a CSV (or its number), a "
-               "source of\nstatistics.log, a port of ptp4l, a clock of phc2sys");
-  command.number("--interval-s", "SECONDS", options->stability.interval_s, kShortestIntervalS,
-                 kLongestIntervalS, "The distance of points. Default: the median of the file");
+  command.text(
+      "--unit", "UNIT", options->unit,
+      "Unit of the time errors of tables whose headings state none (error_ms does): s, ms, "
+      "us, ns, ps");
+  command.text("--time-unit", "UNIT", options->time_unit,
+               "Unit of their times; also ticks: 8ns, 90kHz");
+  Option series = command.text(
+      "--series", "NAME", options->log.series,
+      "Which series of a file that has several: a host, a process, an interface, a clock or a "
+      "source of a log;\na column of a table, or its number. Without NAME: lists them");
+  series.or_nothing();
+  command.number("--interval-s,--tau0", "SECONDS", options->stability.interval_s,
+                 kShortestIntervalS, kLongestIntervalS,
+                 "The distance of points. Default: the median of the file; a table of one column "
+                 "needs it");
+  command.flag("--frequencies", options->log.frequencies,
+               "The table has fractional frequencies; their sum is the time error");
+  command.flag("--locked", options->log.locked,
+               "Without the points before the servo locked (s0, s1 of linuxptp)");
+  command.text("--from", "TIME", options->from,
+               "Without what is before: seconds since the first point, or a time (ISO 8601)");
+  command.text("--until", "TIME", options->until, "Without what is behind");
+  command.flag("--settle", options->stability.settle,
+               "Without the start, of a clock that was not set yet");
   command.flag("--remove-frequency", options->stability.remove_frequency,
                "Remove the frequency offset (a least-squares line) before anything else");
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.footer(kStabilityExamples);
-  command.runs([options] { return run_stability(*options); });
+  command.runs(
+      [options, series] {
+        return series.given() && options->log.series.empty() ? list_series(*options)
+                                                             : run_stability(*options);
+      },
+      [options] { check_options(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,77 +1,64 @@
-// Reads chrony's tracking.log and statistics.log.
+// Reads chrony's logs: columns by blanks, a day and a time of day (UTC) first.
 #include <fmt/format.h>
 
 #include <chrono>
 
 #include "evaluation/stability/log_lines.h"
 #include "recording/counted.h"
+#include "recording/date_time.h"
 #include "recording/number_in.h"
 
 namespace simbench::evaluation {
 namespace {
 
 constexpr std::size_t kTrackingWords = 9;  // the fewest, of the oldest version that has the offset
-constexpr std::size_t kStatisticsWords = 12;  // the fewest
+constexpr std::size_t kStatisticsWords = 12;
+constexpr std::size_t kMeasurementsWords = 17;
+constexpr std::size_t kRefclocksWords = 9;
 
 bool is_leap_status(std::string_view word) {
   return word.size() == 1 && std::string_view("N+-?").find(word[0]) != std::string_view::npos;
 }
 
-std::optional<std::chrono::sys_days> day_of(std::string_view word) {
-  if (word.size() != 10 || word[4] != '-' || word[7] != '-') return std::nullopt;
-  const auto year = number_in<std::int64_t>(word.substr(0, 4));
-  const auto month = number_in<std::int64_t>(word.substr(5, 2));
-  const auto day = number_in<std::int64_t>(word.substr(8, 2));
-  if (!year || !month || !day || *year < 1900 || *month < 1 || *day < 1) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
-  if (!date.ok()) return std::nullopt;
-  std::chrono::sys_days days{date};
-  return days;
+bool is_real(std::string_view word) {
+  return word.find_first_of(".e") != std::string_view::npos && number_in<double>(word).has_value();
 }
 
-std::optional<Microseconds> time_of_day(std::string_view word) {
-  if (word.size() < 8 || word[2] != ':' || word[5] != ':') return std::nullopt;
-  const auto hour = number_in<std::int64_t>(word.substr(0, 2));
-  const auto minute = number_in<std::int64_t>(word.substr(3, 2));
-  const auto second = microseconds_of(word.substr(6));
-  if (!hour || !minute || !second) return std::nullopt;
-  const bool in_day = *hour >= 0 && *hour < 24 && *minute >= 0 && *minute < 60;
-  // 60: a leap second.
-  if (!in_day || *second < Microseconds(0) || *second >= std::chrono::seconds(61))
-    return std::nullopt;
-  return std::chrono::hours(*hour) + std::chrono::minutes(*minute) + *second;
+bool begins_with_time(const std::vector<std::string_view>& words) {
+  return words.size() >= 3 && day_in(words[0]) && time_of_day_in(words[1]);
 }
 
-class ChronyLines final : public LogLines {
+Microseconds time_of(const std::vector<std::string_view>& words) {
+  return std::chrono::duration_cast<Microseconds>(day_in(words[0])->time_since_epoch() +
+                                                  *time_of_day_in(words[1]));
+}
+
+// A line that stops early is one of this log, cut.
+void check_width(const std::vector<std::string_view>& words, std::size_t fewest,
+                 const LogPlace& place) {
+  if (words.size() >= fewest) return;
+  place.fail(fmt::format("found {} columns, allowed: at least {}; is the line complete?",
+                         words.size(), fewest));
+}
+
+class TrackingLines final : public LogLines {
  public:
-  explicit ChronyLines(bool tracking) : tracking_(tracking) {}
-
-  const char* format() const override {
-    return tracking_ ? "chrony_tracking" : "chrony_statistics";
-  }
-
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
-    if (line.starts_with("===") || line.starts_with('#')) return std::nullopt;
     const std::vector<std::string_view> words = words_of(line);
-    if (words[0] == "Date") {
-      const ChronyLog wanted = tracking_ ? ChronyLog::kTracking : ChronyLog::kStatistics;
-      if (chrony_log_of(line) != wanted) place.fail("heading", line, "that of the first lines");
+    if (!begins_with_time(words) || words.size() < 4 || !number_in<std::int64_t>(words[3])) {
       return std::nullopt;
     }
-    check_words(words, place);
-    const auto day = day_of(words[0]);
-    if (!day) place.fail("date", words[0], "a day such as 2024-05-31");
-    const auto time = time_of_day(words[1]);
-    if (!time) place.fail("time", words[1], "a time of the day such as 12:34:56");
-    const Microseconds since_1970 = day->time_since_epoch() + *time;
-    const double error_s = finite_of(words[tracking_ ? 6 : 4], "offset", kLargestErrorS, place);
-    if (tracking_ && words[7] == "?") {
+    if (words.size() > 4 && !number_in<double>(words[4])) return std::nullopt;
+    check_width(words, kTrackingWords, place);
+    if (!is_leap_status(words[7])) {
+      place.fail("leap status", words[7], "N, +, - or ? in the 8th column of tracking.log");
+    }
+    const double error_s = finite_of(words[6], "offset", kLargestErrorS, place);
+    if (words[7] == "?") {
       ++unsynchronised_;
       return std::nullopt;
     }
-    return LogLine{tracking_ ? std::string_view() : words[2], {since_1970, error_s}};
+    return LogLine{.format = "chrony_tracking", .point = {time_of(words), error_s}};
   }
 
   std::vector<std::string> notes() const override {
@@ -80,45 +67,126 @@ class ChronyLines final : public LogLines {
   }
 
  private:
-  void check_words(const std::vector<std::string_view>& words, const LogPlace& place) const {
-    const std::size_t fewest = tracking_ ? kTrackingWords : kStatisticsWords;
-    if (words.size() < fewest) {
-      place.fail(fmt::format("found {} columns, allowed: at least {}; is the line complete?",
-                             words.size(), fewest));
+  std::uint64_t unsynchronised_ = 0;
+};
+
+class StatisticsLines final : public LogLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
+    const std::vector<std::string_view> words = words_of(line);
+    if (!begins_with_time(words) || words.size() < 4 || !is_real(words[3])) return std::nullopt;
+    check_width(words, kStatisticsWords, place);
+    return LogLine{.format = "chrony_statistics",
+                   .name = words[2],
+                   .point = {time_of(words), finite_of(words[4], "offset", kLargestErrorS, place)}};
+  }
+};
+
+class MeasurementsLines final : public LogLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
+    const std::vector<std::string_view> words = words_of(line);
+    if (!begins_with_time(words) || words.size() < 8 || !is_leap_status(words[3]) ||
+        words[5].size() != 3 || words[6].size() != 3) {
+      return std::nullopt;
     }
-    if (tracking_ && !is_leap_status(words[7])) {
-      place.fail("leap status", words[7], "N, +, - or ? in the 8th column of tracking.log");
+    check_width(words, kMeasurementsWords, place);
+    const double theta_s = finite_of(words[11], "offset", kLargestErrorS, place);
+    // A failed test (0) is no measurement that chronyd used.
+    if (line.substr(0, static_cast<std::size_t>(words[8].data() - line.data()))
+            .find_first_of('0', static_cast<std::size_t>(words[5].data() - line.data())) !=
+        std::string_view::npos) {
+      ++failed_;
+      return std::nullopt;
     }
+    return LogLine{
+        .format = "chrony_measurements", .name = words[2], .point = {time_of(words), 0 - theta_s}};
   }
 
-  bool tracking_;
+  std::vector<std::string> notes() const override {
+    if (failed_ == 0) return {};
+    return {counted(failed_, "measurement") + " that chronyd's tests refused left out"};
+  }
+
+ private:
+  std::uint64_t failed_ = 0;
+};
+
+class RefclocksLines final : public LogLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
+    const std::vector<std::string_view> words = words_of(line);
+    if (!begins_with_time(words) || words.size() < 6 || !is_leap_status(words[4]) ||
+        (words[5] != "0" && words[5] != "1" && words[5] != "-")) {
+      return std::nullopt;
+    }
+    check_width(words, kRefclocksWords, place);
+    if (words[6] == "-") {
+      ++filtered_;
+      return std::nullopt;
+    }
+    const double offset_s = finite_of(words[6], "raw offset", kLargestErrorS, place);
+    return LogLine{
+        .format = "chrony_refclocks", .name = words[2], .point = {time_of(words), 0 - offset_s}};
+  }
+
+  std::vector<std::string> notes() const override {
+    if (filtered_ == 0) return {};
+    return {counted(filtered_, "filtered sample") + " left out: the raw ones are taken"};
+  }
+
+ private:
+  std::uint64_t filtered_ = 0;
+};
+
+// "D5B8E5A1,192.0.2.1,2,1725359542.123456789,system time,last offset,RMS offset ..."
+class ChronycLines final : public LogLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
+    constexpr std::size_t kCells = 14;
+    std::vector<std::string_view> cells;
+    for (std::size_t begin = 0; begin <= line.size() && cells.size() <= kCells;) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      cells.push_back(line.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    // A time may stand before each line of the loop.
+    if (!cells.empty()) cells[0] = cells[0].substr(cells[0].find_last_of(" \t") + 1);
+    if (cells.size() != kCells || cells[0].size() != 8 ||
+        cells[0].find_first_not_of("0123456789ABCDEF") != std::string_view::npos) {
+      return std::nullopt;
+    }
+    const std::optional<Microseconds> time = microseconds_of(cells[3]);
+    if (!time) place.fail("reference time", cells[3], "seconds since 1970");
+    if (cells[13] != "Normal" && !cells[13].ends_with(" second")) {
+      ++unsynchronised_;
+      return std::nullopt;
+    }
+    // Between two updates chronyc repeats the last one.
+    if (last_ == *time) return std::nullopt;
+    last_ = *time;
+    return LogLine{.format = "chronyc_tracking",
+                   .point = {*time, finite_of(cells[5], "last offset", kLargestErrorS, place)}};
+  }
+
+  std::vector<std::string> notes() const override {
+    if (unsynchronised_ == 0) return {};
+    return {counted(unsynchronised_, "line") + " of an unsynchronised clock left out"};
+  }
+
+ private:
   std::uint64_t unsynchronised_ = 0;
+  std::optional<Microseconds> last_{};
 };
 
 }  // namespace
 
-ChronyLog chrony_log_of(std::string_view line) {
-  const std::vector<std::string_view> words = words_of(line);
-  if (words.size() < 3) return ChronyLog::kNone;
-  if (words[0] == "Date" && words[1] == "(UTC)") {
-    if (line.find("Est offset") != std::string_view::npos) return ChronyLog::kStatistics;
-    const bool tracking = line.find("Freq ppm") != std::string_view::npos &&
-                          line.find("Offset") != std::string_view::npos;
-    return tracking ? ChronyLog::kTracking : ChronyLog::kOther;
-  }
-  if (!day_of(words[0]) || !time_of_day(words[1])) return ChronyLog::kNone;
-  if (words.size() >= kTrackingWords && number_in<std::int64_t>(words[3]) &&
-      is_leap_status(words[7])) {
-    return ChronyLog::kTracking;
-  }
-  const bool statistics = words.size() >= kStatisticsWords &&
-                          words[3].find_first_of(".e") != std::string_view::npos &&
-                          words[4].find_first_of(".e") != std::string_view::npos;
-  return statistics ? ChronyLog::kStatistics : ChronyLog::kOther;
+std::unique_ptr<LogLines> chrony_tracking_lines() { return std::make_unique<TrackingLines>(); }
+std::unique_ptr<LogLines> chrony_statistics_lines() { return std::make_unique<StatisticsLines>(); }
+std::unique_ptr<LogLines> chrony_measurements_lines() {
+  return std::make_unique<MeasurementsLines>();
 }
-
-std::unique_ptr<LogLines> chrony_lines(bool tracking) {
-  return std::make_unique<ChronyLines>(tracking);
-}
+std::unique_ptr<LogLines> chrony_refclocks_lines() { return std::make_unique<RefclocksLines>(); }
+std::unique_ptr<LogLines> chronyc_tracking_lines() { return std::make_unique<ChronycLines>(); }
 
 }  // namespace simbench::evaluation

@@ -1,46 +1,50 @@
 // Measured time errors of a clock from the files that other programs write, recognised by content:
 //
-//   csv                seconds, time error; see below
-//   chrony_tracking    chrony's tracking.log: date, time (UTC), source, stratum, frequency, skew,
-//                      offset (7th column, seconds, positive: the local clock is fast) ...; lines
-//                      of an unsynchronised clock (leap status '?') are left out
-//   chrony_statistics  chrony's statistics.log: date, time (UTC), source, standard deviation,
-//                      estimated offset (5th column, seconds, positive: the local clock is fast)
-//                      ...
-//   ptp4l, phc2sys     what these print or log: "ptp4l[5374018.735]: master offset -23 s2 freq
-//   ...",
-//                      "phc2sys[..]: CLOCK_REALTIME phc offset 12 s2 freq ...", nanoseconds,
-//                      positive: the clock is ahead of its source; also behind syslog's host,
-//                      program and process. The summaries that they print instead with a summary
-//                      interval
-//                      ("rms 12 max 34 freq ...") have no series in them and are refused
-//   loopstats          ntpd's: modified Julian day, seconds of it (UTC), offset (3rd column,
-//   seconds,
-//                      positive: the local clock is slow, so the sign is turned here) ...
+//   linuxptp     what ptp4l, phc2sys and ts2phc print or log: "ptp4l[5374018.735]: master offset
+//   -23
+//                s2 freq ...", nanoseconds, positive: the clock is ahead of its source; also behind
+//                the heads of syslog, journalctl (short, short-iso, cat, json, export), Docker,
+//                Kubernetes, and of both at once; and their summaries ("rms 67 max 73 freq ...")
+//   chrony       tracking.log (7th column, positive: fast), statistics.log (5th, positive: fast),
+//                measurements.log (12th, positive: slow), refclocks.log (raw offset, positive:
+//                slow), and `chronyc -c tracking` in a loop (last offset, positive: fast)
+//   ntpd         loopstats (3rd column), peerstats (5th), sntp's output, positive: slow; ntpshmmon
+//                (the clock minus the reference's time)
+//   others       w32tm /stripchart, positive: slow; systemd-timesyncd's debug lines, positive:
+//   slow;
+//                ptpd's statistics (offset from master, positive: fast)
+//   csv          tables (recording/table.h) of time and time error; see below
 //
-// A CSV has two columns, or names the one to take (`series`); a first line of names is allowed, and
-// lines that begin with '#'. Times are seconds. A name that ends in a unit ("error_ms", "TE [ns]")
-// states that of the errors; else it is the option's, else seconds.
+// The format is that of most lines: what is no measurement (banners, changes of state, other
+// programs) is skipped, and counted in the notes. Signs are turned so that positive is a clock that
+// is ahead.
 //
-// A file with several series (columns, sources of statistics.log, ports of ptp4l, clocks of
-// phc2sys) needs the name of one. Times are those of the file, as exact microseconds, and ascend:
-// chrony's and ntpd's since 1970 (UTC), linuxptp's of its monotonic clock. Lines that are no
-// measurement (banners, changes of state, other programs in a syslog) are skipped; what that leaves
-// out is said in the notes. A last line without its line end may be cut in mid-number: it is left
-// out, with a note.
+// A table has a column of times and one of errors, which is found by its heading, is the only other
+// one, or is named (`series`). Times are seconds, of the heading's unit, or ISO 8601; a table of
+// one column needs the interval. The unit of errors is that of the heading, else the option's;
+// without both it is a guess that is said (small fractions are seconds), or there is none: whole
+// numbers may be anything. Empty cells and NaN are gaps, counted.
+//
+// A file may have several series (hosts, processes, interfaces, sources, columns): one is named, or
+// it is the only one. Processes of one program that follow one another are one series. Where times
+// go back (a restart, a clock that was set) a new segment begins; segments of a scale that counts
+// from 1970 and do not overlap (rotated files) are put in order. Points of equal times are kept. A
+// last line without its line end may be cut in mid-number: it is left out, with a note.
 //
 // Errors: scenarios::InputError, "FILE:LINE: found ..., allowed: ...": unreadable, empty, of
-// another program, a damaged or unordered line, no finite number, errors beyond kLargestErrorS, a
-// unit that the file contradicts, no point at all. Complexity: linear in the text. Memory: 16 bytes
-// a point.
+// another program, a damaged line, no finite number, errors beyond kLargestErrorS, a unit that the
+// file contradicts or nothing states, more than kMostLogSeries series, no point at all. Complexity:
+// linear in the text. Memory: 16 bytes a point of every series.
 //
-// Sources: chrony.conf(5), the log directive; clock.c and phc2sys.c of linuxptp; monitoring options
-// of ntpd's documentation.
+// Sources: chrony.conf(5), chronyc(1), clock.c, phc2sys.c and print.c of linuxptp, monitoring
+// options of ntpd's documentation, sntp(1), ntpshmmon(1), ptpd2(8), w32tm's help,
+// timesyncd-manager.c of systemd.
 //
 //   const ClockLog log = read_clock_log("/var/log/chrony/tracking.log");
 //   const double first_s = log.points.front().error_s;
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -48,17 +52,22 @@
 #include <vector>
 
 #include "algorithms/ports/time.h"
+#include "recording/time_unit.h"
 
 namespace simbench::evaluation {
 
-enum class ErrorUnit : std::uint8_t { kS, kMs, kUs, kNs };
-
-// A clock that is off by more, 31 years, was never set.
-inline constexpr double kLargestErrorS = 1e9;
+// A clock that is off by more, 317 years, never was set; one that began at 1970 is off by less.
+inline constexpr double kLargestErrorS = 1e10;
+inline constexpr std::size_t kMostLogSeries = 1000;
 
 struct ClockLogOptions {
-  std::optional<ErrorUnit> unit{};  // of a CSV
-  std::string series{};             // which, of a file that has several; empty: the only one
+  std::optional<TimeUnit> unit{};       // of a table's errors
+  std::optional<TimeUnit> time_unit{};  // of its times
+  std::string series{};                 // which, of a file that has several; empty: the only one
+  std::optional<double> interval_s{};   // of a table of one column
+  bool frequencies =
+      false;            // a table has fractional frequencies: what its errors change by a second
+  bool locked = false;  // without the points before the servo locked (linuxptp's s0, s1)
 };
 
 struct ClockLogPoint {
@@ -68,14 +77,36 @@ struct ClockLogPoint {
 
 struct ClockLog {
   std::string path{};
-  std::string format{};                 // a name of the list above
-  std::vector<ClockLogPoint> points{};  // at least one
-  std::vector<std::string> notes{};     // what was left out, "FILE: ..." each
+  std::string format{};  // "chrony_tracking", "ptp4l", "csv" ...
+  std::string series{};  // its name; empty: the only one
+  // At least one; in order of time within each segment.
+  std::vector<ClockLogPoint> points{};
+  // Summaries in place of points: `error_s` is the root mean square over the time since the last
+  // one, and this the largest, both without a sign.
+  std::vector<double> largest_s{};
+  // Where a segment begins, but the first.
+  std::vector<std::size_t> segments{};
+  std::size_t unlocked = 0;          // points before the servo locked
+  std::vector<std::string> notes{};  // what was left out or taken for granted, "FILE: ..." each
+
+  bool are_summaries() const { return !largest_s.empty(); }
+};
+
+// What a file has.
+struct ClockLogSeries {
+  std::string name{};
+  std::string format{};
+  std::size_t points = 0;
+  Microseconds first{};
+  Microseconds last{};
 };
 
 ClockLog read_clock_log(const std::string& path, const ClockLogOptions& options = {});
 // Reads text as if it were the content of `path`.
 ClockLog parse_clock_log(std::string_view text, const std::string& path,
                          const ClockLogOptions& options = {});
+// In order of occurrence; a table's are the columns that may be named.
+std::vector<ClockLogSeries> clock_log_series(const std::string& path,
+                                             const ClockLogOptions& options = {});
 
 }  // namespace simbench::evaluation

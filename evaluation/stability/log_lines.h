@@ -1,15 +1,18 @@
 // The lines of each kind of clock log (evaluation/stability/clock_log.h), one at a time.
 //
-//   const std::string path = "errors.csv";
+//   const std::string path = "tracking.log";
 //   const LogPlace place{path, 1};
-//   const std::unique_ptr<LogLines> lines = lines_of_format("0,1e-6", place, {});
-//   const std::optional<LogLine> point = lines->read("0,1e-6", place);
+//   for (const LogFormat& format : log_formats()) {
+//     const std::unique_ptr<LogLines> lines = format.make();
+//     const std::optional<LogLine> point = lines->read("...", place);
+//   }
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,40 +32,58 @@ struct LogPlace {
                          const std::string& allowed) const;
 };
 
+// A measurement, and whose it is; texts are valid as long as the line.
 struct LogLine {
-  std::string_view series;  // empty where the format has only one
-  ClockLogPoint point;
+  const char* format = "";
+  std::string_view host{};
+  std::string_view process{};
+  std::string_view tag{};   // of a configuration
+  std::string_view name{};  // of a clock, an interface, a source
+  ClockLogPoint point{};
+  std::optional<double> largest_s{};  // of a summary; the point is its RMS
+  bool locked = true;
 };
 
 class LogLines {
  public:
   virtual ~LogLines() = default;
-  virtual const char* format() const = 0;
-  // Nothing for a line that is no measurement. The result is valid as long as the line.
+  // Nothing for a line that is no measurement. Throws for one that is a damaged one.
   virtual std::optional<LogLine> read(std::string_view line, const LogPlace& place) = 0;
   // What was skipped and may be missed.
   virtual std::vector<std::string> notes() const { return {}; }
+  // Times count from 1970.
+  virtual bool absolute() const { return true; }
+  // A line that is no measurement and needs no mention: a rule, a heading, a change of state.
+  virtual bool is_expected(std::string_view line) const;
 };
 
-// The format that this line shows; none for a line that any may begin with (a comment, a rule).
-// Throws for a line that no format has.
-std::unique_ptr<LogLines> lines_of_format(std::string_view line, const LogPlace& place,
-                                          const ClockLogOptions& options);
+struct LogFormat {
+  const char* text;  // for messages
+  std::unique_ptr<LogLines> (*make)();
+};
+std::span<const LogFormat> log_formats();
+// What a file is that has no time errors which can be read, and what would; nothing if unknown.
+std::optional<std::string> known_other_log(std::string_view line);
 
 // For the readers of the formats.
 std::vector<std::string_view> words_of(std::string_view line);
 // A finite number within `largest` either way.
 double finite_of(std::string_view text, const char* what, double largest, const LogPlace& place);
-// Seconds up to 4e11 (12,000 years) either way, to the microsecond.
+// Seconds, to the microsecond.
 std::optional<Microseconds> microseconds_of(std::string_view seconds);
 
-std::unique_ptr<LogLines> csv_lines(const ClockLogOptions& options);
-std::unique_ptr<LogLines> chrony_lines(bool tracking);
-std::unique_ptr<LogLines> linuxptp_lines(const char* program);
+std::unique_ptr<LogLines> chrony_tracking_lines();
+std::unique_ptr<LogLines> chrony_statistics_lines();
+std::unique_ptr<LogLines> chrony_measurements_lines();
+std::unique_ptr<LogLines> chrony_refclocks_lines();
+std::unique_ptr<LogLines> chronyc_tracking_lines();
+std::unique_ptr<LogLines> linuxptp_lines();
 std::unique_ptr<LogLines> loopstats_lines();
-
-// Which of chrony's logs a line is of, by its heading or its columns.
-enum class ChronyLog : std::uint8_t { kNone, kTracking, kStatistics, kOther };
-ChronyLog chrony_log_of(std::string_view line);
+std::unique_ptr<LogLines> peerstats_lines();
+std::unique_ptr<LogLines> sntp_lines();
+std::unique_ptr<LogLines> ntpshmmon_lines();
+std::unique_ptr<LogLines> w32tm_lines();
+std::unique_ptr<LogLines> timesyncd_lines();
+std::unique_ptr<LogLines> ptpd_lines();
 
 }  // namespace simbench::evaluation

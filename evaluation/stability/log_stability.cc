@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
@@ -17,12 +18,158 @@ namespace {
 
 double seconds_of(Microseconds time) { return static_cast<double>(time.count()) / 1e6; }
 
-double median_distance_s(const std::vector<ClockLogPoint>& points) {
+// The begin of each segment, and the end of the last one.
+std::vector<std::size_t> bounds_of(const LogPoints& log) {
+  std::vector<std::size_t> bounds = {0};
+  bounds.insert(bounds.end(), log.segments.begin(), log.segments.end());
+  bounds.push_back(log.points.size());
+  return bounds;
+}
+
+// Distances of neighbours of different times, within the segments.
+std::vector<double> distances_of(const LogPoints& log) {
   std::vector<double> distances;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    distances.push_back(seconds_of(points[i].time - points[i - 1].time));
+  distances.reserve(log.points.size());
+  const std::vector<std::size_t> bounds = bounds_of(log);
+  for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
+    for (std::size_t i = bounds[segment] + 1; i < bounds[segment + 1]; ++i) {
+      const double distance_s = seconds_of(log.points[i].time - log.points[i - 1].time);
+      if (distance_s > 0) distances.push_back(distance_s);
+    }
   }
-  return median(std::move(distances));
+  return distances;
+}
+
+// Points of one time as their mean; how many were so.
+LogPoints without_equal_times(const LogPoints& log, std::uint64_t& equal) {
+  LogPoints found;
+  found.points.reserve(log.points.size());
+  const std::vector<std::size_t> bounds = bounds_of(log);
+  for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
+    if (segment > 0) found.segments.push_back(found.points.size());
+    double count = 0;
+    for (std::size_t i = bounds[segment]; i < bounds[segment + 1]; ++i) {
+      const ClockLogPoint& point = log.points[i];
+      if (i > bounds[segment] && point.time == found.points.back().time) {
+        ++count;
+        ++equal;
+        double& mean_s = found.points.back().error_s;
+        mean_s += (point.error_s - mean_s) / count;
+      } else {
+        count = 1;
+        found.points.push_back(point);
+      }
+    }
+  }
+  return found;
+}
+
+// Takes one point after another of a log that may restart.
+class Grid {
+ public:
+  Grid(double interval_s, double share) : interval_s_(interval_s), share_(share) {}
+
+  void begin_segment(Microseconds first) {
+    // The time between two segments is unknown: it counts as one interval.
+    if (!even_.series.pieces.empty()) shift_s_ = last_s_ + interval_s_ - seconds_of(first);
+    fresh_ = true;
+  }
+
+  void take(const ClockLogPoint& point) {
+    const double time_s = seconds_of(point.time) + shift_s_;
+    std::vector<TimeErrorPiece>& pieces = even_.series.pieces;
+    const double since_s = time_s - last_s_;
+    if (!fresh_ && since_s < (1 - share_) * interval_s_) {
+      ++even_.left_out;
+      return;
+    }
+    if (!fresh_ && since_s <= (1 + share_) * interval_s_) {
+      neighbours_s_ += since_s;
+      ++even_.neighbours;
+    } else {
+      if (!fresh_) even_.longest_gap_s = std::max(even_.longest_gap_s, since_s);
+      if (pieces.empty()) first_s_ = time_s;
+      pieces.push_back({.start_s = time_s - first_s_});
+    }
+    fresh_ = false;
+    pieces.back().x_s.push_back(point.error_s);
+    last_s_ = time_s;
+  }
+
+  EvenSeries finish() {
+    even_.series.interval_s = interval_s_;
+    if (even_.neighbours > 0) {
+      // To the microsecond of the stamps, so that a regular log has its plain interval.
+      const double mean_s = neighbours_s_ / static_cast<double>(even_.neighbours);
+      even_.series.interval_s = std::max(std::round(mean_s * 1e6), 1.0) / 1e6;
+    }
+    return std::move(even_);
+  }
+
+ private:
+  double interval_s_;
+  double share_;
+  EvenSeries even_{};
+  double neighbours_s_ = 0;
+  double first_s_ = 0;
+  double last_s_ = 0;
+  double shift_s_ = 0;
+  bool fresh_ = true;
+};
+
+double covered_s(const EvenSeries& even) {
+  return static_cast<double>(even.neighbours) * even.series.interval_s;
+}
+
+// The medians of distances of one octave each, of those that occur often, ascending.
+std::vector<double> octaves_of(std::vector<double> distances) {
+  constexpr std::size_t kRare = 20;  // one in so many
+  std::ranges::sort(distances);
+  std::vector<double> found;
+  for (std::size_t begin = 0; begin < distances.size();) {
+    const auto end = static_cast<std::size_t>(
+        std::upper_bound(distances.begin(), distances.end(), std::sqrt(2) * distances[begin]) -
+        distances.begin());
+    if ((end - begin) * kRare >= distances.size()) found.push_back(distances[(begin + end) / 2]);
+    begin = end;
+  }
+  return found;
+}
+
+// The even series of a log whose interval nobody states, and how it was found, if that is not
+// plain.
+EvenSeries found_grid(const LogPoints& log, std::string& how) {
+  constexpr double kNearlyAll = 0.9;
+  const std::vector<double> distances = distances_of(log);
+  const double median_s = median(distances);
+  const auto enough = [&](const EvenSeries& even) {
+    return static_cast<double>(even.neighbours) >=
+           kEvenShare * static_cast<double>(distances.size());
+  };
+  EvenSeries plain = evenly_spaced(log, median_s);
+  if (enough(plain)) return plain;
+  EvenSeries wide = evenly_spaced(log, median_s, kUnevenShare);
+  if (enough(wide)) {
+    how =
+        fmt::format("distances of points vary: those within {:.0f} % of {:.6g} s are taken as even",
+                    100 * kUnevenShare, median_s);
+    return wide;
+  }
+  std::vector<EvenSeries> candidates;
+  for (const double interval_s : octaves_of(distances)) {
+    candidates.push_back(evenly_spaced(log, interval_s));
+  }
+  double most_s = covered_s(plain);
+  for (const EvenSeries& candidate : candidates) most_s = std::max(most_s, covered_s(candidate));
+  if (covered_s(plain) >= kNearlyAll * most_s) return plain;
+  for (EvenSeries& candidate : candidates) {
+    if (covered_s(candidate) < kNearlyAll * most_s) continue;
+    how = fmt::format("distances of points go from {:.6g} to {:.6g} s: taken at {:.6g} s",
+                      *std::ranges::min_element(distances), *std::ranges::max_element(distances),
+                      candidate.series.interval_s);
+    return std::move(candidate);
+  }
+  return plain;
 }
 
 // Points without a neighbour on the grid.
@@ -32,22 +179,25 @@ std::uint64_t lone_points(const TimeErrorSeries& series) {
                     [](const TimeErrorPiece& piece) { return piece.x_s.size() == 1; }));
 }
 
-void add_notes(std::uint64_t lone, LogStability& found) {
+void add_grid_notes(const EvenSeries& even, LogStability& found) {
   const Stability& stability = found.stability;
   const auto note = [&](const std::string& text) {
     found.notes.push_back(found.file + ": " + text);
   };
   if (found.left_out > 0) {
-    note(fmt::format("{} between those {:.6g} s apart left out",
+    note(fmt::format("{} between those {:.6g} s apart only in the time error",
                      counted(static_cast<std::uint64_t>(found.left_out), "point"),
                      stability.interval_s));
   }
   if (stability.pieces > 1) {
-    note(fmt::format("{}, the longest of {:.6g} s: no difference reaches over a gap",
-                     counted(static_cast<std::uint64_t>(stability.pieces - 1), "gap"),
-                     found.longest_gap_s));
+    note(found.longest_gap_s > 0
+             ? fmt::format("{}, the longest of {:.6g} s: no difference reaches over a gap",
+                           counted(static_cast<std::uint64_t>(stability.pieces - 1), "gap"),
+                           found.longest_gap_s)
+             : fmt::format("{}: no difference reaches over a gap",
+                           counted(static_cast<std::uint64_t>(stability.pieces - 1), "gap")));
   }
-  if (lone > 0) {
+  if (const std::uint64_t lone = lone_points(even.series); lone > 0) {
     note(
         fmt::format("{} without a neighbour at {:.6g} s only in the time error; --interval-s "
                     "states another interval",
@@ -61,58 +211,162 @@ void add_notes(std::uint64_t lone, LogStability& found) {
   }
 }
 
+TimeErrorSummary size_of(std::span<const ClockLogPoint> points) {
+  TimeErrorSeries series{.pieces = {{}}};
+  std::vector<double>& x_s = series.pieces.front().x_s;
+  x_s.reserve(points.size());
+  for (const ClockLogPoint& point : points) x_s.push_back(point.error_s);
+  return time_error_of(series);
+}
+
+// How many first points are a start; 0: none.
+std::size_t start_of(std::span<const ClockLogPoint> points) {
+  if (points.size() < 2 * kSettledPoints) return 0;
+  std::vector<double> second_half;
+  for (const ClockLogPoint& point : points.subspan(points.size() / 2)) {
+    second_half.push_back(point.error_s);
+  }
+  const double middle_s = median(second_half);
+  for (double& x : second_half) x = std::abs(x - middle_s);
+  const double normal = 1.4826;  // a standard deviation in median absolute distances
+  const double limit_s = kStartScatters * normal * median(std::move(second_half));
+  std::size_t settled = 0;
+  for (std::size_t i = 0; i < points.size() / 2 + kSettledPoints; ++i) {
+    settled = std::abs(points[i].error_s - middle_s) <= limit_s ? settled + 1 : 0;
+    if (settled == kSettledPoints) return i + 1 - kSettledPoints;
+  }
+  return 0;
+}
+
+// Leaves `count` first points out.
+void drop_first(LogPoints& log, std::size_t count) {
+  log.points.erase(log.points.begin(), log.points.begin() + static_cast<std::ptrdiff_t>(count));
+  std::erase_if(log.segments, [&](std::size_t begin) { return begin <= count; });
+  for (std::size_t& begin : log.segments) begin -= count;
+}
+
+// The points of the asked stretch.
+LogPoints asked_points(const ClockLog& log, const LogStabilityOptions& options) {
+  LogPoints found;
+  const double first_s = seconds_of(log.points.front().time);
+  const auto on_scale = [&](const LogTime& time) {
+    return time.time_s + (time.since_first ? first_s : 0);
+  };
+  std::size_t segment = 0;
+  bool begins = false;
+  for (std::size_t i = 0; i < log.points.size(); ++i) {
+    if (segment < log.segments.size() && log.segments[segment] == i) {
+      ++segment;
+      begins = !found.points.empty();
+    }
+    const double time_s = seconds_of(log.points[i].time);
+    if (options.from && time_s < on_scale(*options.from)) continue;
+    if (options.until && time_s > on_scale(*options.until)) continue;
+    if (std::exchange(begins, false)) found.segments.push_back(found.points.size());
+    found.points.push_back(log.points[i]);
+  }
+  if (found.points.empty()) {
+    throw scenarios::InputError(
+        fmt::format("{}: found no time error in the asked time, allowed: from 0 to {:.9g} s after "
+                    "the first, or "
+                    "times of the log's own scale",
+                    log.path, seconds_of(log.points.back().time) - first_s));
+  }
+  return found;
+}
+
+void remove_line(LogPoints& log, LogStability& found) {
+  std::vector<double> times;
+  std::vector<double> errors;
+  for (const ClockLogPoint& point : log.points) {
+    times.push_back(seconds_of(point.time - log.points.front().time));
+    errors.push_back(point.error_s);
+  }
+  const FittedLine line = fit_line(times, errors);
+  if (!std::isfinite(line.slope)) return;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    log.points[i].error_s -= line.slope * (times[i] - line.mean_x);
+  }
+  found.frequency_offset = line.slope;
+}
+
+// The size of a log of summaries: their maxima, and the root of their mean squares.
+LogStability stability_of_summaries(const ClockLog& log, LogStability found) {
+  double squares = 0;
+  for (const ClockLogPoint& point : log.points) squares += point.error_s * point.error_s;
+  found.are_summaries = true;
+  found.stability.points = found.samples;
+  found.stability.interval_s =
+      log.points.size() > 1 ? median(distances_of({log.points, log.segments})) : 0;
+  found.stability.pieces = static_cast<std::int64_t>(log.segments.size()) + 1;
+  found.stability.time_error.max_te_ms = 1e3 * *std::ranges::max_element(log.largest_s);
+  found.stability.time_error.rms_te_ms =
+      1e3 * std::sqrt(squares / static_cast<double>(log.points.size()));
+  found.notes.push_back(fmt::format(
+      "{}: its lines are summaries (rms, max), which have no sign and no order: only the largest "
+      "and "
+      "the RMS time error exist. For the rest each update must be logged: ptp4l does that where "
+      "summary_interval does not exceed logSyncInterval (-3 for 8 messages a second), phc2sys with "
+      "-u 0",
+      log.path));
+  return found;
+}
+
 }  // namespace
 
-EvenSeries evenly_spaced(const std::vector<ClockLogPoint>& points,
-                         std::optional<double> interval_s) {
-  SIMBENCH_ASSERT(points.size() >= 2, "a single point has no interval");
-  const double nominal_s = interval_s.value_or(median_distance_s(points));
-  EvenSeries even;
-  even.series.interval_s = nominal_s;
-  std::vector<TimeErrorPiece>& pieces = even.series.pieces;
-  double neighbours_s = 0;
-  std::int64_t neighbours = 0;
-  Microseconds last{};
-  for (const ClockLogPoint& point : points) {
-    const double since_s = pieces.empty() ? 0 : seconds_of(point.time - last);
-    if (!pieces.empty() && since_s < (1 - kGridShare) * nominal_s) {
-      ++even.left_out;
-      continue;
-    }
-    const bool next = !pieces.empty() && since_s <= (1 + kGridShare) * nominal_s;
-    if (next) {
-      neighbours_s += since_s;
-      ++neighbours;
-    } else {
-      even.longest_gap_s = std::max(even.longest_gap_s, since_s);
-      pieces.push_back({.start_s = seconds_of(point.time - points.front().time)});
-    }
-    pieces.back().x_s.push_back(point.error_s);
-    last = point.time;
+EvenSeries evenly_spaced(const LogPoints& log, std::optional<double> interval_s, double share) {
+  const double nominal_s = interval_s ? *interval_s : median(distances_of(log));
+  SIMBENCH_ASSERT(nominal_s > 0, "points of one time have no interval");
+  Grid grid(nominal_s, share);
+  const std::vector<std::size_t> bounds = bounds_of(log);
+  for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
+    grid.begin_segment(log.points[bounds[segment]].time);
+    for (std::size_t i = bounds[segment]; i < bounds[segment + 1]; ++i) grid.take(log.points[i]);
   }
-  if (neighbours > 0) {
-    // To the microsecond of the stamps, so that a regular log has its plain interval.
-    const double mean_s = neighbours_s / static_cast<double>(neighbours);
-    even.series.interval_s = std::max(std::round(mean_s * 1e6), 1.0) / 1e6;
-  }
-  return even;
+  return grid.finish();
 }
 
 LogStability stability_of_log(const ClockLog& log, const LogStabilityOptions& options) {
-  if (log.points.size() < 2) {
-    throw scenarios::InputError(
-        fmt::format("{}: found a single time error, allowed: two or more", log.path));
-  }
-  EvenSeries even = evenly_spaced(log.points, options.interval_s);
   LogStability found{.file = log.path,
                      .format = log.format,
+                     .series = log.series,
                      .first_s = seconds_of(log.points.front().time),
-                     .left_out = even.left_out,
-                     .longest_gap_s = even.longest_gap_s,
+                     .samples = static_cast<std::int64_t>(log.points.size()),
                      .notes = log.notes};
-  if (options.remove_frequency) found.frequency_offset = remove_frequency_offset(even.series);
+  if (log.are_summaries()) return stability_of_summaries(log, std::move(found));
+  LogPoints asked = asked_points(log, options);
+  if (const std::size_t start = start_of(asked.points); start > 0) {
+    const std::span<const ClockLogPoint> all = asked.points;
+    found.start = {.points = static_cast<std::int64_t>(start),
+                   .until_s = seconds_of(asked.points[start].time - asked.points.front().time),
+                   .largest_ms = size_of(all.first(start)).max_te_ms,
+                   .settled = size_of(all.subspan(start))};
+    found.settled = options.settle;
+    if (options.settle) drop_first(asked, start);
+  }
+  if (distances_of(asked).empty()) {
+    throw scenarios::InputError(fmt::format(
+        "{}: found a single time error, allowed: two or more of different times", log.path));
+  }
+  found.samples = static_cast<std::int64_t>(asked.points.size());
+  found.first_s = seconds_of(asked.points.front().time);
+  if (options.remove_frequency) remove_line(asked, found);
+  const TimeErrorSummary size = size_of(asked.points);
+  std::uint64_t equal = 0;
+  const LogPoints single = without_equal_times(asked, equal);
+  std::string how;
+  const EvenSeries even =
+      options.interval_s ? evenly_spaced(single, options.interval_s) : found_grid(single, how);
+  found.left_out = even.left_out;
+  found.longest_gap_s = even.longest_gap_s;
   found.stability = stability_of(even.series);
-  add_notes(lone_points(even.series), found);
+  found.stability.time_error = size;
+  if (equal > 0) {
+    found.notes.push_back(fmt::format("{}: {} of the time of the one before: the mean is taken",
+                                      log.path, counted(equal, "point")));
+  }
+  if (!how.empty()) found.notes.push_back(log.path + ": " + how);
+  add_grid_notes(even, found);
   return found;
 }
 

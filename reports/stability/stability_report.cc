@@ -52,6 +52,18 @@ std::int64_t gaps_of(const LogStability& file) {
   return std::max<std::int64_t>(file.stability.pieces - 1, 0);
 }
 
+// Summaries have only a largest and an RMS time error.
+bool has_size(const LogStability& file, const Size& size) {
+  return !file.are_summaries || size.value == &evaluation::TimeErrorSummary::max_te_ms ||
+         size.value == &evaluation::TimeErrorSummary::rms_te_ms;
+}
+
+double seconds_of(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
+
+std::string name_of(const LogStability& file) {
+  return file.series.empty() ? file.file : fmt::format("{} {}", file.file, file.series);
+}
+
 std::string offset_text(const LogStability& file) {
   return file.frequency_offset ? fmt::format("{:.6g}", 1e9 * *file.frequency_offset) : "-";
 }
@@ -68,14 +80,16 @@ Table files_table(const std::vector<LogStability>& files) {
   Table table(columns);
   for (const LogStability& file : files) {
     const Stability& stability = file.stability;
-    std::vector<std::string> cells = {file.file,
+    std::vector<std::string> cells = {name_of(file),
                                       file.format,
-                                      count_text(stability.points),
+                                      count_text(file.samples),
                                       fmt::format("{:.6g}", stability.interval_s),
                                       count_text(gaps_of(file)),
                                       count_text(static_cast<std::int64_t>(stability.steps.size())),
                                       offset_text(file)};
-    for (const Size& size : kSizes) cells.push_back(three_digits(stability.time_error.*size.value));
+    for (const Size& size : kSizes) {
+      cells.push_back(has_size(file, size) ? three_digits(stability.time_error.*size.value) : "-");
+    }
     table.add(std::move(cells));
   }
   return table;
@@ -94,18 +108,51 @@ std::vector<std::string> step_items(const Stability& stability) {
   return items;
 }
 
+Json start_json(const LogStability& file) {
+  if (!file.start) return nullptr;
+  return {{"points", file.start->points},
+          {"until_s", file.start->until_s},
+          {"largest_ms", file.start->largest_ms},
+          {"left_out", file.settled},
+          {"settled_max_te_ms", file.start->settled.max_te_ms},
+          {"settled_rms_te_ms", file.start->settled.rms_te_ms}};
+}
+
+// How the time error is with and without the start.
+std::string start_text(const LogStability& file) {
+  const evaluation::LogStart& start = *file.start;
+  const std::string points = counted(static_cast<std::uint64_t>(start.points), "point");
+  if (file.settled) {
+    return fmt::format(
+        "The first {} ({:.6g} s), of a clock that was not set yet, left out: up to {}.", points,
+        start.until_s, time_text(start.largest_ms));
+  }
+  return fmt::format(
+      "The first {} ({:.6g} s) are of a clock that was not set yet: without them ({}) the largest "
+      "time error is {}, its RMS {}.",
+      points, start.until_s, "--settle", time_text(start.settled.max_te_ms),
+      time_text(start.settled.rms_te_ms));
+}
+
 Json file_json(const LogStability& file) {
   Json object = {{"file", file.file},
                  {"format", file.format},
+                 {"series", file.series},
                  {"first_s", file.first_s},
                  {"interval_s", file.stability.interval_s},
+                 {"samples", file.samples},
                  {"points", file.stability.points},
                  {"left_out", file.left_out},
                  {"gaps", gaps_of(file)},
                  {"longest_gap_s", file.longest_gap_s},
                  {"frequency_offset_ppb", nullptr}};
   if (file.frequency_offset) object["frequency_offset_ppb"] = 1e9 * *file.frequency_offset;
+  object["summaries"] = file.are_summaries;
+  object["start"] = start_json(file);
   add_stability(object, file.stability);
+  for (const Size& size : kSizes) {
+    if (!has_size(file, size)) object[size.name] = nullptr;
+  }
   object["steps"] = Json::array();
   for (const evaluation::TimeErrorStep& step : file.stability.steps) {
     object["steps"].push_back({{"at_s", step.at_s}, {"step_ms", 1e3 * step.step_s}});
@@ -159,13 +206,23 @@ AnswerText stability_answer(const std::vector<LogStability>& files) {
   const auto worst = std::ranges::max_element(files, {}, largest_te);
   const evaluation::TimeErrorSummary& size = worst->stability.time_error;
   AnswerText answer{.lead = files.size() == 1
-                                ? fmt::format("The largest time error of {} is {}.", worst->file,
-                                              time_text(size.max_te_ms))
+                                ? fmt::format("The largest time error of {} is {}.",
+                                              name_of(*worst), time_text(size.max_te_ms))
                                 : fmt::format("Of {}, {} has the largest time error: {}.",
-                                              counted(files.size(), "clock"), worst->file,
+                                              counted(files.size(), "clock"), name_of(*worst),
                                               time_text(size.max_te_ms))};
-  answer.add("Parts", fmt::format("Its mean is {}, what changes around it {} (RMS).",
-                                  time_text(size.constant_te_ms), time_text(size.dynamic_te_ms)));
+  answer.add("Parts",
+             worst->are_summaries
+                 ? fmt::format("Its RMS is {}.", time_text(size.rms_te_ms))
+                 : fmt::format("Its mean is {}, what changes around it {} (RMS).",
+                               time_text(size.constant_te_ms), time_text(size.dynamic_te_ms)));
+  for (const LogStability& file : files) {
+    if (file.start) {
+      answer.add("Start", files.size() == 1
+                              ? start_text(file)
+                              : fmt::format("{}: {}", name_of(file), start_text(file)));
+    }
+  }
   std::int64_t steps = 0;
   std::int64_t gaps = 0;
   for (const LogStability& file : files) {
@@ -185,7 +242,7 @@ Document stability_document(const std::vector<LogStability>& files) {
                     .head = paragraphs(stability_answer(files))};
   document.blocks.push_back({.heading = "Time error (TE)", .table = files_table(files)});
   for (const LogStability& file : files) {
-    Block block{.heading = file.file};
+    Block block{.heading = name_of(file)};
     if (!file.stability.mtie_ms.empty()) block.table = stability_table(file.stability);
     block.items = step_items(file.stability);
     document.blocks.push_back(std::move(block));
@@ -205,19 +262,22 @@ Document stability_document(const std::vector<LogStability>& files) {
 std::string stability_csv(const std::vector<LogStability>& files) {
   std::string text = "file,format,quantity,tau_s,value,terms\n";
   for (const LogStability& file : files) {
-    const std::string head = csv_cell(file.file) + "," + file.format + ",";
+    const std::string head = csv_cell(name_of(file)) + "," + file.format + ",";
     const auto add = [&](const char* quantity, double value) {
       text += fmt::format("{}{},,{},\n", head, quantity, csv_cell(value));
     };
     const Stability& stability = file.stability;
     add("first_s", file.first_s);
     add("interval_s", stability.interval_s);
+    add("samples", static_cast<double>(file.samples));
     add("points", static_cast<double>(stability.points));
     add("left_out", static_cast<double>(file.left_out));
     add("gaps", static_cast<double>(gaps_of(file)));
     add("longest_gap_s", file.longest_gap_s);
     if (file.frequency_offset) add("frequency_offset_ppb", 1e9 * *file.frequency_offset);
-    for (const Size& size : kSizes) add(size.name, stability.time_error.*size.value);
+    for (const Size& size : kSizes) {
+      if (has_size(file, size)) add(size.name, stability.time_error.*size.value);
+    }
     for (const ClockCurve& curve : evaluation::clock_curves()) {
       for (const StabilityPoint& point : stability.*curve.points) {
         text += fmt::format("{}{},{},{},{}\n", head, curve.id, csv_cell(point.tau_s),
@@ -227,6 +287,38 @@ std::string stability_csv(const std::vector<LogStability>& files) {
     add("steps", static_cast<double>(stability.steps.size()));
   }
   return text;
+}
+
+Document log_series_document(const std::vector<LogSeriesOfFile>& files) {
+  Document document{.title = "series of " + counted(files.size(), "file")};
+  for (const LogSeriesOfFile& file : files) {
+    Table table({{"series", Align::kLeft}, {"format", Align::kLeft}, {"points"}, {"length\ns"}});
+    for (const evaluation::ClockLogSeries& series : file.series) {
+      table.add({series.name, series.format,
+                 series.points > 0 ? count_text(static_cast<std::int64_t>(series.points)) : "-",
+                 series.points > 0 ? fmt::format("{:.6g}", seconds_of(series.last - series.first))
+                                   : "-"});
+    }
+    document.blocks.push_back({.heading = file.file, .table = std::move(table)});
+  }
+  return document;
+}
+
+std::string log_series_json(const std::vector<LogSeriesOfFile>& files) {
+  Json root = new_document();
+  root["files"] = Json::array();
+  for (const LogSeriesOfFile& file : files) {
+    Json list = Json::array();
+    for (const evaluation::ClockLogSeries& series : file.series) {
+      list.push_back({{"name", series.name},
+                      {"format", series.format},
+                      {"points", series.points},
+                      {"first_s", seconds_of(series.first)},
+                      {"last_s", seconds_of(series.last)}});
+    }
+    root["files"].push_back({{"file", file.file}, {"series", std::move(list)}});
+  }
+  return file_text(root);
 }
 
 std::string stability_json(const std::vector<LogStability>& files) {

@@ -3,14 +3,17 @@
 //
 // JSON, schema_version 1 (what does not exist is left out of a list, or null):
 //   {"schema_version", "version", "commit", "answer" (reports/text/answer_json.h),
-//    "files": [{"file", "format", "first_s", "interval_s", "points", "left_out", "gaps",
-//               "longest_gap_s", "frequency_offset_ppb",
+//    "files": [{"file", "format", "series", "first_s", "interval_s", "samples", "points",
+//               "left_out", "gaps", "longest_gap_s", "frequency_offset_ppb", "summaries",
+//               "start": {"points", "until_s", "largest_ms", "left_out", "settled_max_te_ms",
+//                         "settled_rms_te_ms"},
 //               "max_te_ms", "rms_te_ms", "constant_te_ms", "dynamic_te_ms", "dynamic_te_p2p_ms",
 //               "adev", "mdev", "hdev", "tdev_ms", "mtie_ms": [{"tau_s", "value", "terms"}],
 //               "steps": [{"at_s", "step_ms"}], "notes": [...]}]}
 // frequency_offset_ppb is null unless it was removed; at_s counts from the first point, which is
-// first_s on the log's own scale. Definitions: evaluation/stability/stability.h, time_error.h and
-// log_stability.h.
+// first_s on the log's own scale; samples are all points, points those of the grid; of summaries
+// only max_te_ms and rms_te_ms exist. Definitions: evaluation/stability/stability.h, time_error.h
+// and log_stability.h.
 //
 // CSV: file,format,quantity,tau_s,value,terms, a line for each value; quantities are the members of
 // the JSON that are numbers, without tau_s and terms, and its lists.
@@ -25,6 +28,17 @@
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
+
+// The series of a file, of which one may be named.
+//
+// JSON, schema_version 1: {"schema_version", "version", "commit",
+//   "files": [{"file", "series": [{"name", "format", "points", "first_s", "last_s"}]}]}
+struct LogSeriesOfFile {
+  std::string file{};
+  std::vector<evaluation::ClockLogSeries> series{};
+};
+Document log_series_document(const std::vector<LogSeriesOfFile>& files);
+std::string log_series_json(const std::vector<LogSeriesOfFile>& files);
 
 // The largest time error of the files, its parts, and what breaks them.
 AnswerText stability_answer(const std::vector<evaluation::LogStability>& files);

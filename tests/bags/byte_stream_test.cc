@@ -1,4 +1,4 @@
-#include "bags/byte_stream.h"
+#include "recording/byte_stream.h"
 
 #include <gmock/gmock.h>
 

@@ -1,14 +1,15 @@
-#include "bags/byte_stream.h"
+#include "recording/byte_stream.h"
 
 #include <bzlib.h>
 #include <lz4frame.h>
+#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <vector>
 
-namespace simbench::bags {
+namespace simbench {
 namespace {
 
 constexpr std::size_t kInflateBuffer = std::size_t{64} << 10;
@@ -178,6 +179,43 @@ class Bzip2Inflater final : public Inflater {
   bool ended_ = false;
 };
 
+class GzipInflater final : public Inflater {
+ public:
+  explicit GzipInflater(ByteStream& compressed) : Inflater(compressed) {
+    constexpr int kGzipWindowBits = 15 + 16;  // the largest window, with gzip's head
+    if (inflateInit2(&stream_, kGzipWindowBits) != Z_OK) throw std::bad_alloc();
+  }
+  ~GzipInflater() override { inflateEnd(&stream_); }
+  GzipInflater(const GzipInflater&) = delete;
+  GzipInflater& operator=(const GzipInflater&) = delete;
+
+  std::size_t inflate(char* to, std::size_t most) override {
+    while (true) {
+      if (!fill()) {
+        if (between_members_) return 0;
+        throw InflateError("gzip: the compressed bytes end too early");
+      }
+      stream_.next_in = reinterpret_cast<Bytef*>(next());
+      stream_.avail_in = static_cast<unsigned>(left());
+      stream_.next_out = reinterpret_cast<Bytef*>(to);
+      stream_.avail_out = static_cast<unsigned>(std::min<std::size_t>(most, kInflateBuffer));
+      const unsigned room = stream_.avail_out;
+      const int result = ::inflate(&stream_, Z_NO_FLUSH);
+      consume(left() - stream_.avail_in);
+      between_members_ = result == Z_STREAM_END;
+      if (result != Z_OK && !between_members_) {
+        throw InflateError("gzip: the compressed bytes are damaged");
+      }
+      if (between_members_) inflateReset(&stream_);
+      if (stream_.avail_out < room) return room - stream_.avail_out;
+    }
+  }
+
+ private:
+  z_stream stream_{};
+  bool between_members_ = false;
+};
+
 }  // namespace
 
 std::size_t ByteStream::read_up_to(char* to, std::size_t count) {
@@ -260,8 +298,10 @@ std::unique_ptr<ByteStream> inflated(Compression compression, ByteStream& compre
       return std::make_unique<ZstdInflater>(compressed);
     case Compression::kBzip2:
       return std::make_unique<Bzip2Inflater>(compressed);
+    case Compression::kGzip:
+      return std::make_unique<GzipInflater>(compressed);
   }
   return nullptr;
 }
 
-}  // namespace simbench::bags
+}  // namespace simbench

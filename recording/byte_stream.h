@@ -1,7 +1,7 @@
 // Bytes in order, of a file or of a compressed part of one, of which most are skipped.
 //
 // Memory: a buffer of 16 kB for a file; for compressed bytes 128 kB, and what the format looks back
-// to (LZ4 64 kB, bzip2 4 MB, zstd up to 64 MB, a frame that needs more is refused).
+// to (LZ4 64 kB, gzip 32 kB, bzip2 4 MB, zstd up to 64 MB, a frame that needs more is refused).
 //
 //   FileBytes file("rig.bag");
 //   file.seek(4096);
@@ -21,7 +21,7 @@
 
 #include "scenarios/input_file.h"
 
-namespace simbench::bags {
+namespace simbench {
 
 // Compressed bytes that are damaged; what() is the reason alone.
 class InflateError : public std::runtime_error {
@@ -88,10 +88,10 @@ class MemoryBytes final : public ByteStream {
   std::string_view bytes_;
 };
 
-enum class Compression : std::uint8_t { kLz4, kZstd, kBzip2 };
+enum class Compression : std::uint8_t { kLz4, kZstd, kBzip2, kGzip };
 
-// The plain bytes of a compressed stream (of LZ4 and zstd: of frames, one after another), which
+// The plain bytes of a compressed stream (of all but bzip2: of frames, one after another), which
 // outlives this. Reading throws InflateError for bytes that are damaged or end too early.
 std::unique_ptr<ByteStream> inflated(Compression compression, ByteStream& compressed);
 
-}  // namespace simbench::bags
+}  // namespace simbench

@@ -1,0 +1,76 @@
+// Which columns of a table of frames are what: as the user says, or as its heading and its numbers
+// show.
+//
+// The unit of a column of stamps is the one behind its name, else that of its heading; ISO 8601
+// needs none. Else it is found by size (stamps that count from 1970) or by rate (the only unit in
+// which frames come 1 to 1000 times a second), and said in a note; where none fits, it must be
+// stated.
+//
+//   const auto columns = RecordingColumns::parse("sensor=t_cam:us,arrival=t_host:ns,counter=seq");
+//   const ResolvedColumns found = resolve(columns, table, notes);
+//
+// Errors: CsvError. Complexity: that of the first rows.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording/recorded_streams.h"
+#include "recording/table.h"
+#include "recording/time_unit.h"
+
+namespace simbench {
+
+// A file that is no such recording. what() is the message for the user, "FILE:LINE: ...".
+class CsvError : public RecordedFileError {
+ public:
+  using RecordedFileError::RecordedFileError;
+};
+
+enum class CsvField : std::uint8_t { kStream, kIndex, kCounter, kSensor, kArrival, kCamera, kHost };
+inline constexpr std::size_t kCsvFields = 7;
+
+struct RecordingColumns {
+  struct Column {
+    std::string name{};  // as in the heading, or a number from 1; blanks and capitals do not matter
+    std::optional<TimeUnit> unit{};
+  };
+  // By field; an empty name: none.
+  std::array<Column, kCsvFields> columns{};
+  // One row a set of frames: a column of stamps for each camera, which has its name.
+  std::vector<Column> cameras{};
+
+  // From "sensor=t_cam:us,arrival=t_host:ns,counter=seq": of stream, index, counter, sensor,
+  // arrival, camera and host. Several sensor= are a camera each. Throws CsvError: "--columns: ...",
+  // also if the sensor's is missing.
+  static RecordingColumns parse(const std::string& text);
+  const Column& of(CsvField field) const { return columns[static_cast<std::size_t>(field)]; }
+};
+
+// Columns of one table, by position.
+struct ResolvedColumns {
+  struct Stamps {
+    std::string name{};
+    std::size_t position = 0;
+    TimeUnit unit{};
+  };
+  std::array<std::optional<std::size_t>, kCsvFields> position{};
+  std::vector<Stamps> sensors{};  // at least one
+  std::optional<Stamps> arrival{};
+};
+
+// Notes say what was taken for granted, without the file's name.
+ResolvedColumns resolve(const RecordingColumns& columns, const TableReader& table,
+                        std::vector<std::string>& notes);
+// Of a table about which nothing is said: its only column of times, and a counter if one is called
+// so. Throws CsvError, with what would be read.
+ResolvedColumns found_columns(const TableReader& table, std::vector<std::string>& notes);
+
+// The plain name: blanks, capitals and a mark of comments differ between versions of a tool.
+std::string plain_column_name(std::string_view cell);
+
+}  // namespace simbench

@@ -1,0 +1,154 @@
+#include "recording/text_file.h"
+
+#include <bzlib.h>
+#include <gmock/gmock.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <string>
+#include <vector>
+
+#include "recording/line_reader.h"
+#include "scenarios/input_file.h"
+#include "tests/scratch_folder.h"
+
+namespace simbench {
+namespace {
+
+using testing::HasSubstr;
+
+std::string gzipped(const std::string& text) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(text.size() + 1000, '\0');
+  std::string plain = text;
+  stream.next_in = reinterpret_cast<Bytef*>(plain.data());
+  stream.avail_in = static_cast<unsigned>(plain.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<unsigned>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(packed.size() - stream.avail_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+std::string zstd(const std::string& text) {
+  std::string packed(ZSTD_compressBound(text.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), 3));
+  return packed;
+}
+
+std::string bzip2(const std::string& text) {
+  std::string plain = text;
+  std::string packed(plain.size() + 1000, '\0');
+  auto size = static_cast<unsigned>(packed.size());
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size, plain.data(),
+                                     static_cast<unsigned>(plain.size()), 9, 0, 0),
+            BZ_OK);
+  packed.resize(size);
+  return packed;
+}
+
+std::string utf16(const std::u16string& text, bool big_endian, bool mark) {
+  std::string bytes;
+  for (const char16_t unit : (mark ? u"\ufeff" : u"") + text) {
+    const auto high = static_cast<char>(unit >> 8U);
+    const auto low = static_cast<char>(unit & 0xffU);
+    bytes += big_endian ? high : low;
+    bytes += big_endian ? low : high;
+  }
+  return bytes;
+}
+
+class TextFileTest : public testing::Test {
+ protected:
+  std::string read(const std::string& content, std::size_t step = 4096) {
+    TextFile file(folder_.write("a.txt", content));
+    std::string all;
+    std::vector<char> buffer(step);
+    while (const std::size_t size = file.read(buffer.data(), buffer.size())) {
+      all.append(buffer.data(), size);
+    }
+    return all;
+  }
+  std::string problem(const std::string& content) {
+    try {
+      read(content);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(TextFileTest, InflatesWhatIsCompressed) {
+  std::string text;
+  for (int i = 0; i < 50'000; ++i) text += std::to_string(i * 7919) + "\n";
+  EXPECT_EQ(read(text), text);
+  EXPECT_EQ(read(gzipped(text)), text);
+  EXPECT_EQ(read(gzipped(text) + gzipped("more\n")), text + "more\n") << "two members";
+  EXPECT_EQ(read(zstd(text)), text);
+  EXPECT_EQ(read(bzip2(text)), text);
+  EXPECT_EQ(read(gzipped("")), "");
+  EXPECT_EQ(read(""), "");
+}
+
+TEST_F(TextFileTest, TurnsUtf16IntoUtf8) {
+  const std::u16string text = u"time_s,offset_µs\r\n1,\U0001F600\n";
+  const std::string plain = "time_s,offset_µs\r\n1,\U0001F600\n";
+  for (const bool big_endian : {false, true}) {
+    for (const bool mark : {false, true}) {
+      for (const std::size_t step : {4U, 5U, 64U}) {
+        EXPECT_EQ(read(utf16(text, big_endian, mark), step), plain) << big_endian << mark << step;
+      }
+    }
+  }
+  EXPECT_EQ(read(gzipped(utf16(text, false, true))), plain);
+  EXPECT_EQ(read("\xef\xbb\xbf"
+                 "abcd"),
+            "abcd");
+  const std::string halves = utf16(std::u16string(u"ab") + char16_t(0xd83d) + u"c", false, true);
+  EXPECT_EQ(read(halves),
+            "ab\xef\xbf\xbd"
+            "c");
+}
+
+TEST_F(TextFileTest, DamageIsAnError) {
+  const std::string packed = gzipped(std::string(100'000, 'a') + "\n");
+  EXPECT_EQ(problem(packed.substr(0, packed.size() / 2)),
+            "gzip: the compressed bytes end too early");
+  std::string broken = packed;
+  broken[20] = static_cast<char>(broken[20] ^ 0x55);
+  EXPECT_THAT(problem(broken), HasSubstr("gzip: the compressed bytes"));
+}
+
+TEST_F(TextFileTest, OtherFilesAreNamed) {
+  EXPECT_EQ(problem("\x1a\x45\xdf\xa3 matroska"), "it is a Matroska video (MKV, WebM), no text");
+  EXPECT_EQ(problem("\x89HDF\r\n\x1a\n"), "it is an HDF5 file, no text");
+  EXPECT_EQ(problem(std::string("\0\0\0\x20"
+                                "ftypisom",
+                                12)),
+            "it is an MP4 or MOV video, no text");
+  EXPECT_EQ(problem("#ROSBAG V2.0\n"), "it is a bag of ROS 1, no text");
+}
+
+TEST_F(TextFileTest, LinesMayBeReadAgain) {
+  std::string text;
+  for (int i = 0; i < 30'000; ++i) text += std::to_string(i) + "\n";
+  LineReader lines(folder_.write("b.txt", text + "torn"));
+  EXPECT_EQ(lines.next(), "0");
+  lines.mark();
+  for (int i = 1; i < 20'000; ++i) ASSERT_EQ(lines.next(), std::to_string(i));
+  EXPECT_EQ(lines.line(), 20'000U);
+  lines.rewind();
+  for (int i = 1; i < 30'000; ++i) ASSERT_EQ(lines.next(), std::to_string(i));
+  EXPECT_FALSE(lines.torn());
+  EXPECT_EQ(lines.next(), std::nullopt);
+  EXPECT_TRUE(lines.torn());
+  EXPECT_EQ(lines.line(), 30'001U);
+}
+
+}  // namespace
+}  // namespace simbench
