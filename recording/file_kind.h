@@ -1,7 +1,7 @@
 // What a file is by its first bytes: for messages about files that are not what was asked for, and
 // for files that must not be written over.
 //
-//   if (const auto kind = file_kind(first_bytes)) fail(fmt::format("it is {}", kind->what));
+//   if (const auto kind = file_kind("#ROSBAG V2.0")) print(kind->what);   // "a bag of ROS 1"
 //
 // Sources: the formats' own specifications, as in the file(1) database.
 #pragma once

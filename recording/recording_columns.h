@@ -7,7 +7,9 @@
 // stated.
 //
 //   const auto columns = RecordingColumns::parse("sensor=t_cam:us,arrival=t_host:ns,counter=seq");
-//   const ResolvedColumns found = resolve(columns, table, notes);
+//   std::vector<std::string> notes;
+//   TableReader rows(LineReader("frames.csv"));
+//   const ResolvedColumns found = resolve(columns, rows, notes);
 //
 // Errors: CsvError. Complexity: that of the first rows.
 #pragma once

@@ -7,8 +7,8 @@
 // writes it. Else the first row is the heading if none of its cells is a value. Blank lines are
 // skipped.
 //
-//   TableReader table(LineReader("errors.csv"));
-//   while (const std::vector<std::string_view>* cells = table.next()) use(*cells, table.place());
+//   TableReader rows(LineReader("errors.csv"));
+//   while (const std::vector<std::string_view>* cells = rows.next()) use(*cells, rows.place());
 //
 // Errors: LineError ("FILE:LINE: ..."): unreadable, a quote without its end. Rows are not checked
 // for their number of cells: what is missing is for the user to say. Complexity: linear; memory:

@@ -9,6 +9,7 @@
 // Complexity: linear; memory: two buffers of 64 kB, and what decompression looks back to
 // (recording/byte_stream.h).
 //
+//   char buffer[4096];
 //   TextFile file("ptp4l.log.gz");
 //   while (const std::size_t size = file.read(buffer, sizeof buffer)) use(buffer, size);
 #pragma once

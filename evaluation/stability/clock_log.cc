@@ -76,8 +76,13 @@ Sample sample_of(LineReader& reader) {
 // One file as it is read.
 class LogReading {
  public:
-  LogReading(LineReader lines, const ClockLogOptions& options)
-      : path_(lines.path()), lines_(std::move(lines)), options_(options), set_(options) {
+  // `lists`: what series there are is asked, not their points.
+  LogReading(LineReader lines, const ClockLogOptions& options, bool lists)
+      : path_(lines.path()),
+        lines_(std::move(lines)),
+        options_(options),
+        lists_(lists),
+        set_(options) {
     lines_.mark();
     const Sample sample = sample_of(lines_);
     if (!sample.any) fail_empty();
@@ -100,7 +105,7 @@ class LogReading {
     return log;
   }
 
-  std::vector<ClockLogSeries> list() { return table_ ? table_series_ : set_.list(); }
+  std::vector<ClockLogSeries> list() { return set_.empty() ? table_series_ : set_.list(); }
 
  private:
   LogPlace place_() const { return {path_, lines_.line()}; }
@@ -121,6 +126,7 @@ class LogReading {
   std::string path_;
   LineReader lines_;
   const ClockLogOptions& options_;
+  bool lists_;
   LogSeriesSet set_;
   bool absolute_ = true;
   std::vector<std::string> notes_{};
@@ -168,14 +174,14 @@ void LogReading::read_table(const std::string& first) {
                     quoted_bytes(first), fmt::join(formats, ", ")));
   }
   table_series_ = table_columns(table);
-  table_ = read_table_log(table, options_);
-}
-
-// Reads a log; a line that cannot be read is a user's mistake.
-template <class Use>
-auto with_log(LineReader lines, const ClockLogOptions& options, const Use& use) {
-  LogReading reading(std::move(lines), options);
-  return use(reading);
+  if (lists_ && !has_series_columns(table)) return;
+  ClockLog log = read_table_log(table, options_, set_);
+  absolute_ = false;
+  if (set_.empty()) {
+    table_ = std::move(log);
+  } else {
+    notes_ = std::move(log.notes);
+  }
 }
 
 template <class Action>
@@ -190,23 +196,17 @@ auto checked_lines(const Action& action) {
 }  // namespace
 
 ClockLog read_clock_log(const std::string& path, const ClockLogOptions& options) {
-  return checked_lines([&] {
-    return with_log(LineReader(path), options, [](LogReading& log) { return log.take(); });
-  });
+  return checked_lines([&] { return LogReading(LineReader(path), options, false).take(); });
 }
 
 ClockLog parse_clock_log(std::string_view text, const std::string& path,
                          const ClockLogOptions& options) {
-  return checked_lines([&] {
-    return with_log(LineReader(path, text), options, [](LogReading& log) { return log.take(); });
-  });
+  return checked_lines([&] { return LogReading(LineReader(path, text), options, false).take(); });
 }
 
 std::vector<ClockLogSeries> clock_log_series(const std::string& path,
                                              const ClockLogOptions& options) {
-  return checked_lines([&] {
-    return with_log(LineReader(path), options, [](LogReading& log) { return log.list(); });
-  });
+  return checked_lines([&] { return LogReading(LineReader(path), options, true).list(); });
 }
 
 }  // namespace simbench::evaluation

@@ -1,8 +1,9 @@
 // What a daemon said, out of what a collector of logs made of it: JSON of journalctl and Docker,
 // journalctl's export form, or a line as it is.
 //
-//   JournalText journal;
-//   if (const auto entry = journal.read(line)) use(entry->host, entry->message);
+//   JournalText text_of_journal;
+//   const auto entry = text_of_journal.read("{\"_HOSTNAME\":\"n\",\"MESSAGE\":\"hello\"}");
+//   if (entry) use(entry->host, entry->message);
 //
 // Complexity: linear, one pass a line; texts are valid until the next call.
 #pragma once

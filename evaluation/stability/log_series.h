@@ -1,8 +1,9 @@
 // The series of a clock log while it is read: whose each point is, and which one is asked for.
 //
+//   const std::string path = "ptp4l.log";
 //   LogSeriesSet set({.series = "eth0"});
-//   set.add(line, 17);
-//   ClockLog log = set.take("ptp4l.log", true);
+//   set.add({.format = "ptp4l", .name = "eth0"}, {path, 17});
+//   const ClockLog log = set.take({path, 17}, true);
 //
 // Complexity: constant for each point. Memory: 16 bytes a point.
 #pragma once
@@ -11,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "evaluation/stability/clock_log.h"
@@ -20,7 +22,7 @@ namespace simbench::evaluation {
 
 class LogSeriesSet {
  public:
-  explicit LogSeriesSet(const ClockLogOptions& options) : options_(options) {}
+  explicit LogSeriesSet(ClockLogOptions options) : options_(std::move(options)) {}
 
   // Throws scenarios::InputError for the series beyond kMostLogSeries.
   void add(const LogLine& line, const LogPlace& place);
@@ -57,7 +59,7 @@ class LogSeriesSet {
   void name_series();
   Series& chosen(const LogPlace& place);
 
-  const ClockLogOptions& options_;
+  ClockLogOptions options_;
   std::vector<Series> series_{};
   std::unordered_map<std::string, std::size_t> index_{};
   std::string key_{};

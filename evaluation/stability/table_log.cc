@@ -48,6 +48,26 @@ struct TableColumns {
   std::size_t error = kNoColumn;
 };
 
+// The columns that tell series apart: of a pipeline, a seed, a host.
+using KeyColumns = std::array<std::size_t, 3>;
+
+KeyColumns key_columns(const TableReader& table) {
+  constexpr std::array<std::array<std::string_view, 3>, 3> kNames = {
+      {{"pipeline", "program", "run"}, {"seed", "process", "port"}, {"host", "source", "clock"}}};
+  KeyColumns keys{kNoColumn, kNoColumn, kNoColumn};
+  for (std::size_t i = 0; i < table.heading().size(); ++i) {
+    const std::string letters = small_letters(table.heading()[i]);
+    for (std::size_t key = 0; key < kNames.size(); ++key) {
+      if (std::ranges::find(kNames[key], letters) != kNames[key].end()) keys[key] = i;
+    }
+  }
+  return keys;
+}
+
+bool has_keys(const KeyColumns& keys) {
+  return std::ranges::any_of(keys, [](std::size_t key) { return key != kNoColumn; });
+}
+
 std::vector<std::size_t> value_columns(const TableReader& table) {
   std::vector<std::size_t> found;
   const std::vector<std::string> row = table.first_row();
@@ -65,8 +85,12 @@ std::string column_name(const TableReader& table, std::size_t column) {
 
 class TableLog {
  public:
-  TableLog(TableReader& table, const ClockLogOptions& options)
-      : table_(table), options_(options), cells_(table.first_row().size()) {
+  TableLog(TableReader& table, const ClockLogOptions& options, LogSeriesSet& series)
+      : table_(table),
+        options_(options),
+        series_(series),
+        cells_(table.first_row().size()),
+        keys_(key_columns(table)) {
     log_.path = table.path();
     log_.format = "csv";
     find_columns();
@@ -86,16 +110,20 @@ class TableLog {
   void find_units();
   std::optional<TimeUnit> stated_unit() const;
   void read_row(const std::vector<std::string_view>& row);
+  void add_to_series(const std::vector<std::string_view>& row, Microseconds time, double value);
   Microseconds time_of(std::string_view cell);
   void add(Microseconds time, double value);
   void guess_unit();
+  [[noreturn]] void fail_without_unit() const;
   void scale();
   void sum_frequencies();
   void add_notes();
 
   TableReader& table_;
   const ClockLogOptions& options_;
+  LogSeriesSet& series_;
   std::size_t cells_;
+  KeyColumns keys_;
   TableColumns columns_{};
   std::optional<TimeUnit> unit_{};       // of errors
   std::optional<TimeUnit> time_unit_{};  // of times that are numbers
@@ -107,7 +135,9 @@ class TableLog {
 };
 
 void TableLog::find_columns() {
-  const std::vector<std::size_t> values = value_columns(table_);
+  std::vector<std::size_t> values = value_columns(table_);
+  std::erase_if(
+      values, [&](std::size_t column) { return std::ranges::find(keys_, column) != keys_.end(); });
   const std::vector<std::string>& heading = table_.heading();
   for (const std::size_t column : values) {
     if (columns_.time != kNoColumn || values.size() == 1) break;
@@ -132,7 +162,8 @@ std::size_t TableLog::named_column(const std::vector<std::size_t>& values) const
     names.push_back(quoted_bytes(name_of(column)));
     only = column;
   }
-  if (options_.series.empty()) {
+  // A name is that of a series then.
+  if (options_.series.empty() || (has_keys(keys_) && names.size() == 1)) {
     if (names.size() == 1) return only;
     begin().fail(
         fmt::format("found {} columns of values, allowed: two (time, time error), or "
@@ -234,7 +265,25 @@ void TableLog::read_row(const std::vector<std::string_view>& row) {
   const double value =
       finite_of(cell, "time error", unit_ ? kLargestErrorS / seconds : 1e19, place());
   whole_ = whole_ && cell.find_first_of(".eE") == std::string_view::npos;
-  add(time, value);
+  if (has_keys(keys_)) {
+    add_to_series(row, time, value);
+  } else {
+    add(time, value);
+  }
+}
+
+void TableLog::add_to_series(const std::vector<std::string_view>& row, Microseconds time,
+                             double value) {
+  if (!unit_) fail_without_unit();
+  const auto key = [&](std::size_t i) {
+    return keys_[i] == kNoColumn ? std::string_view() : row[keys_[i]];
+  };
+  series_.add({.format = "csv",
+               .host = key(0),
+               .tag = key(1),
+               .name = key(2),
+               .point = {time, value * unit_->seconds()}},
+              place());
 }
 
 void TableLog::add(Microseconds time, double value) {
@@ -256,6 +305,10 @@ void TableLog::guess_unit() {
     note("time errors are taken as s, by their size: no heading and no --unit says so");
     return;
   }
+  fail_without_unit();
+}
+
+void TableLog::fail_without_unit() const {
   begin().fail(fmt::format(
       "found no unit of the time errors of column {}, allowed: one in its heading (offset_ns), or "
       "--unit with one of {}",
@@ -301,6 +354,10 @@ void TableLog::add_notes() {
 
 ClockLog TableLog::read() {
   while (const std::vector<std::string_view>* row = table_.next()) read_row(*row);
+  if (!series_.empty()) {
+    add_notes();
+    return std::move(log_);
+  }
   if (log_.points.empty()) place().fail("the file ends without a time error");
   guess_unit();
   scale();
@@ -310,6 +367,8 @@ ClockLog TableLog::read() {
 }
 
 }  // namespace
+
+bool has_series_columns(const TableReader& table) { return has_keys(key_columns(table)); }
 
 bool is_table_of_values(const TableReader& table) { return !value_columns(table).empty(); }
 
@@ -321,8 +380,8 @@ std::vector<ClockLogSeries> table_columns(const TableReader& table) {
   return found;
 }
 
-ClockLog read_table_log(TableReader& table, const ClockLogOptions& options) {
-  return TableLog(table, options).read();
+ClockLog read_table_log(TableReader& table, const ClockLogOptions& options, LogSeriesSet& series) {
+  return TableLog(table, options, series).read();
 }
 
 }  // namespace simbench::evaluation

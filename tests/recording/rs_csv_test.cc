@@ -102,8 +102,9 @@ TEST(RsCsv, KeepsAWrappedRegisterAsItIs) {
 
 TEST(RsCsv, RefusesWhatIsNoRecording) {
   EXPECT_THAT(refusal(""), HasSubstr("front.csv:1: the file is empty"));
-  EXPECT_THAT(refusal("time,value\n1,2\n"),
-              HasSubstr(":1: found 'time,value', allowed: the header"));
+  EXPECT_THAT(refusal("value,other\n1,2\n"),
+              HasSubstr(":1: found a table with the columns 'value', 'other', which is none of "
+                        "rs-data-collect, allowed: --columns sensor="));
   EXPECT_THAT(refusal("Configuration:\nDepth,Depth,Z16\n"), HasSubstr(":2: the file ends"));
   EXPECT_THAT(refusal(kHeader), HasSubstr(":1: the file ends without a frame"));
   EXPECT_THAT(refusal(kHeader + "Gyro,0,1,10,100\n"), HasSubstr("without a frame"));
@@ -115,11 +116,11 @@ TEST(RsCsv, NamesTheDamagedLine) {
   EXPECT_THAT(refusal(good + "Depth,0,2,43\n"), StartsWith("dir/front.csv:3: found 4 cells"));
   EXPECT_THAT(refusal(good + "Depth,0,2,4x,133\n"),
               HasSubstr(":3: HW Timestamp (ms): found '4x', allowed: a number"));
-  EXPECT_THAT(refusal(good + "Depth,0,2,-1,133\n"), HasSubstr("found '-1', allowed: 0 or more"));
-  EXPECT_THAT(refusal(good + "Depth,0,2,43,nan\n"), HasSubstr("Host Timestamp(ms): found 'nan'"));
-  EXPECT_THAT(refusal(good + "Depth,0,two,43,133\n"), HasSubstr("F#: found 'two'"));
+  EXPECT_THAT(refusal(good + "Depth,0,2,43,inf\n"), HasSubstr("Host Timestamp(ms): found 'inf'"));
+  EXPECT_THAT(refusal(good + "Depth,0,two,43,133\n"), HasSubstr("counter: found 'two'"));
   EXPECT_THAT(refusal(good + ",0,2,43,133\n"), HasSubstr("empty cell"));
   EXPECT_THAT(refusal(good + "Stream Type,Index\n"), HasSubstr(":3: found 'Stream Type,Index'"));
+  EXPECT_THAT(refusal(good + "Depth,0,1.5,43,133\n"), HasSubstr("allowed: a whole number"));
   const std::string endless(100'000, 'x');
   EXPECT_LT(refusal(good + "Depth,0,2," + endless + ",1\n").size(), 200U);
 }
@@ -213,21 +214,110 @@ TEST(RsCsv, ColumnsThatAreNotThereAreNamed) {
     }
     return "";
   };
-  EXPECT_THAT(message_of("sensor=s,arrival=b", "s,a\n1,2\n"),
-              HasSubstr("log.csv:1: found no column 'b' in the header 's,a'"));
-  EXPECT_THAT(message_of("sensor=s", ""), HasSubstr("at least sensor=COLUMN and arrival=COLUMN"));
-  EXPECT_THAT(message_of("sensor=s:h,arrival=a", ""), HasSubstr("units ns, us, ms, s"));
+  EXPECT_THAT(
+      message_of("sensor=s:us,arrival=b:us", "s,a\n1,2\n"),
+      HasSubstr("log.csv:1: found no column 'b', allowed: 's', 'a', or a number from 1 to 2"));
+  EXPECT_THAT(message_of("arrival=s", ""), HasSubstr("allowed: at least sensor=COLUMN"));
+  EXPECT_THAT(message_of("sensor=s:parsec,arrival=a", ""), HasSubstr("units s, ms, us, ns, ps"));
   EXPECT_THAT(message_of("time=s,arrival=a", ""), HasSubstr("fields stream, index"));
-  EXPECT_THAT(message_of("sensor=s,sensor=t,arrival=a", ""), HasSubstr("found 'sensor=t'"));
-  EXPECT_THAT(message_of("sensor=s:us,arrival=a", "s,a\n1x,2\n"), HasSubstr("s: found '1x'"));
+  EXPECT_THAT(message_of("sensor=s,arrival=t,arrival=a", ""), HasSubstr("found 'arrival=a'"));
+  EXPECT_THAT(message_of("sensor=s,sensor=t,camera=a", ""), HasSubstr("several sensor=COLUMN"));
+  EXPECT_THAT(message_of("sensor=s:us,arrival=a:us", "s,a\n1,2\n1x,2\n"),
+              HasSubstr("log.csv:3: s: found '1x'"));
+  EXPECT_THAT(message_of("sensor=s,arrival=a", "s,a\n1,2\n1,2\n"),
+              HasSubstr("found no unit of the stamps of column 's', allowed: one behind its name"));
   // Without them, the message says how.
   CsvRecordingReader usual;
   try {
     usual.read_text("s,a\n1,2\n", "log.csv");
     ADD_FAILURE() << "accepted";
   } catch (const CsvError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--columns sensor=COLUMN,arrival=COLUMN"));
+    EXPECT_THAT(error.what(), HasSubstr("--columns sensor=COLUMN:UNIT,arrival=COLUMN:UNIT"));
   }
+}
+
+// A table that is read with these columns ("": with none stated).
+struct TableRead {
+  std::vector<RecordedStream> streams{};
+  std::vector<std::string> notes{};
+};
+
+TableRead table(const std::string& text, const std::string& columns = {}) {
+  CsvRecordingReader reader =
+      columns.empty() ? CsvRecordingReader() : CsvRecordingReader(RecordingColumns::parse(columns));
+  reader.read_text(text, "t.csv");
+  return {.streams = reader.take(), .notes = reader.notes()};
+}
+
+std::vector<std::int64_t> sensors_ns(const RecordedStream& stream) {
+  std::vector<std::int64_t> found;
+  for (const StampedFrame& frame : stream.frames) found.push_back(frame.sensor.count());
+  return found;
+}
+
+TEST(RsCsv, ListsOfStampsAreReadAsTheyAre) {
+  const TableRead euroc = table("1700000000123455872\n1700000000173456000\n");
+  EXPECT_THAT(sensors_ns(euroc.streams.at(0)),
+              ElementsAre(1700000000123455872, 1700000000173456000));
+  EXPECT_EQ(euroc.streams[0].frames[1].arrival, euroc.streams[0].frames[1].sensor);
+  EXPECT_THAT(euroc.notes, ElementsAre(HasSubstr("taken as ns since 1970, by its size"),
+                                       HasSubstr("there is one clock only")));
+  const TableRead tum = table(
+      "# rgb maps\n# timestamp filename\n1700000100.003014 rgb/1.png\n"
+      "1700000100.036890 rgb/2.png\n");
+  EXPECT_THAT(sensors_ns(tum.streams.at(0)), ElementsAre(1700000100003014000, 1700000100036890000));
+  const TableRead kitti = table("2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.064389445\n");
+  EXPECT_THAT(sensors_ns(kitti.streams.at(0)),
+              ElementsAre(1317042145964389445, 1317042146064389445));
+  const TableRead mav0 = table(
+      "#timestamp [ns],filename\n1403636579763555584,1.png\n"
+      "1403636579813555456,2.png\n");
+  EXPECT_THAT(sensors_ns(mav0.streams.at(0)),
+              ElementsAre(1403636579763555584, 1403636579813555456));
+  EXPECT_THAT(sensors_ns(table("seq,time_ms\n7,0.5\n8,33.8\n").streams.at(0)),
+              ElementsAre(500'000, 33'800'000));
+  EXPECT_EQ(table("seq,time_ms\n7,0.5\n8,33.8\n").streams[0].frames[1].counter, 8U);
+}
+
+TEST(RsCsv, UnitsOfStampsAreStatedOrSaid) {
+  const TableRead headed =
+      table("cam_us,host_s\n1000,0.5\n2000,1.5\n", "sensor=cam_us,arrival=host_s");
+  EXPECT_THAT(sensors_ns(headed.streams.at(0)), ElementsAre(1'000'000, 2'000'000));
+  EXPECT_EQ(headed.streams[0].frames[0].arrival, Nanoseconds(500'000'000));
+  EXPECT_THAT(headed.notes, ElementsAre());
+  const TableRead rated = table("c,h\n0,1.5\n33333,34.8\n66667,68.1\n", "sensor=c,arrival=h");
+  EXPECT_THAT(sensors_ns(rated.streams.at(0)), ElementsAre(0, 33'333'000, 66'667'000));
+  EXPECT_THAT(rated.notes, ElementsAre(HasSubstr("column 'c': taken as us, by its rate"),
+                                       HasSubstr("column 'h': taken as ms, by its rate")));
+  const TableRead ticks = table("t,h\n0,0\n4166666,33\n", "sensor=t:8ns,arrival=h:ms");
+  EXPECT_THAT(sensors_ns(ticks.streams.at(0)), ElementsAre(0, 33'333'328));
+  const TableRead numbered = table("0;1,5\n33,3;2,5\n", "sensor=1:ms,arrival=2:s");
+  EXPECT_THAT(sensors_ns(numbered.streams.at(0)), ElementsAre(0, 33'300'000));
+}
+
+TEST(RsCsv, ReadsWhatNumpyWrites) {
+  const TableRead saved = table(
+      "# frame,cam_s,host_s\n0.000000000000000000e+00,0.000000000000000000e+00,"
+      "1.700000000014576435e+09\n1.000000000000000000e+00,3.333333333333333287e-02,"
+      "1.700000000048232317e+09\nnan,nan,nan\n",
+      "sensor=cam_s,arrival=host_s,counter=frame");
+  EXPECT_THAT(sensors_ns(saved.streams.at(0)), ElementsAre(0, 33'333'333));
+  EXPECT_EQ(saved.streams[0].frames[1].counter, 1U);
+  EXPECT_THAT(saved.notes,
+              ElementsAre("t.csv: 1 cell without a stamp left out, the first in line 4"));
+  const TableRead quoted = table("\"frame\",\"cam_ts\"\n\"0\",\"-0.5\"\n\"1\",\"0.5\"\n",
+                                 "sensor=cam_ts:s,arrival=cam_ts:s,counter=frame");
+  EXPECT_THAT(sensors_ns(quoted.streams.at(0)), ElementsAre(-500'000'000, 500'000'000));
+}
+
+TEST(RsCsv, ARowMayBeASetOfFrames) {
+  const TableRead sets = table("left_ms,right_ms,host_ms\n0,1,5\n33,,38\n66,67,71\n",
+                               "sensor=left_ms,sensor=right_ms,arrival=host_ms");
+  ASSERT_EQ(sets.streams.size(), 2U);
+  EXPECT_EQ(sets.streams[0].camera, "left_ms");
+  EXPECT_THAT(sensors_ns(sets.streams[0]), ElementsAre(0, 33'000'000, 66'000'000));
+  EXPECT_THAT(sensors_ns(sets.streams[1]), ElementsAre(1'000'000, 67'000'000));
+  EXPECT_EQ(sets.streams[1].host, sets.streams[0].host);
 }
 
 TEST(RsCsv, FilesAreNamedByWhatTellsThemApart) {

@@ -21,7 +21,7 @@ struct Read {
   Rows rows{};
 };
 
-Read read(const std::string& text) {
+Read read_rows(const std::string& text) {
   TableReader table(LineReader("t.csv", text));
   Read found{.dialect = table.dialect(), .heading = table.heading()};
   while (const std::vector<std::string_view>* cells = table.next()) {
@@ -34,7 +34,7 @@ TEST(Table, FindsTheSeparator) {
   for (const char* separator : {",", ";", "\t", " ", "   ", " \t ", ", ", " ; "}) {
     const std::string text =
         std::string("t") + separator + "x_ns\n0" + separator + "64\n1" + separator + "-24\n";
-    const Read found = read(text);
+    const Read found = read_rows(text);
     EXPECT_THAT(found.heading, ElementsAre("t", "x_ns")) << separator;
     EXPECT_EQ(found.rows, (Rows{{"0", "64"}, {"1", "-24"}})) << separator;
   }
@@ -42,15 +42,15 @@ TEST(Table, FindsTheSeparator) {
 
 TEST(Table, ReadsDecimalCommas) {
   for (const char* separator : {";", "\t", " "}) {
-    const Read found = read(std::string("0,5") + separator + "1,25e-6\n1" + separator + "-2\n");
+    const Read found = read_rows(std::string("0,5") + separator + "1,25e-6\n1" + separator + "-2\n");
     EXPECT_TRUE(found.dialect.decimal_comma) << separator;
     EXPECT_EQ(found.rows, (Rows{{"0.5", "1.25e-6"}, {"1", "-2"}})) << separator;
   }
-  EXPECT_EQ(read("0,5\n1,5\n").rows, (Rows{{"0", "5"}, {"1", "5"}})) << "two columns";
+  EXPECT_EQ(read_rows("0,5\n1,5\n").rows, (Rows{{"0", "5"}, {"1", "5"}})) << "two columns";
 }
 
 TEST(Table, ReadsQuotes) {
-  const Read found = read("\"a\",\"b \"\"x\"\"\"\n\"1\",\"2, and 3\"\n 4 ,\"\"\n");
+  const Read found = read_rows("\"a\",\"b \"\"x\"\"\"\n\"1\",\"2, and 3\"\n 4 ,\"\"\n");
   EXPECT_THAT(found.heading, ElementsAre("a", "b \"x\""));
   EXPECT_EQ(found.rows, (Rows{{"1", "2, and 3"}, {"4", ""}}));
   TableReader open(LineReader("t.csv", "a,b\n1,2\n\"3,4\n"));
@@ -64,26 +64,26 @@ TEST(Table, ReadsQuotes) {
 }
 
 TEST(Table, TakesACommentedHeading) {
-  EXPECT_THAT(read("# time_s,offset_ns\n0.0,6.4e1\n").heading, ElementsAre("time_s", "offset_ns"));
-  const Read tum = read("# rgb maps\n# file: own\n# timestamp filename\n1.5 a.png\n2.5 b.png\n");
+  EXPECT_THAT(read_rows("# time_s,offset_ns\n0.0,6.4e1\n").heading, ElementsAre("time_s", "offset_ns"));
+  const Read tum = read_rows("# rgb maps\n# file: own\n# timestamp filename\n1.5 a.png\n2.5 b.png\n");
   EXPECT_THAT(tum.heading, ElementsAre("timestamp", "filename"));
   EXPECT_EQ(tum.rows, (Rows{{"1.5", "a.png"}, {"2.5", "b.png"}}));
-  EXPECT_THAT(read("% a comment\n1,2\n// more\n3,4\n").rows, SizeIs(2));
-  EXPECT_THAT(read("###\n#\n1,2\n").heading, IsEmpty());
+  EXPECT_THAT(read_rows("% a comment\n1,2\n// more\n3,4\n").rows, SizeIs(2));
+  EXPECT_THAT(read_rows("###\n#\n1,2\n").heading, IsEmpty());
 }
 
 TEST(Table, HasNoHeadingWhereTheFirstRowHasValues) {
-  EXPECT_THAT(read("0,1\n1,2\n").heading, IsEmpty());
-  EXPECT_THAT(read("nan,1\n1,2\n").heading, IsEmpty());
-  EXPECT_THAT(read("2024-09-03T10:32:22Z,x\n").heading, IsEmpty());
-  EXPECT_THAT(read("\n\n1700000000123455872\n1700000000173456000\n").heading, IsEmpty());
-  EXPECT_EQ(read("1700000000123455872\n17\n").dialect.separator, TableDialect::kOneColumn);
+  EXPECT_THAT(read_rows("0,1\n1,2\n").heading, IsEmpty());
+  EXPECT_THAT(read_rows("nan,1\n1,2\n").heading, IsEmpty());
+  EXPECT_THAT(read_rows("2024-09-03T10:32:22Z,x\n").heading, IsEmpty());
+  EXPECT_THAT(read_rows("\n\n1700000000123455872\n1700000000173456000\n").heading, IsEmpty());
+  EXPECT_EQ(read_rows("1700000000123455872\n17\n").dialect.separator, TableDialect::kOneColumn);
 }
 
 TEST(Table, ADayAndATimeAreOneCell) {
-  EXPECT_EQ(read("2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.064389445\n").rows,
+  EXPECT_EQ(read_rows("2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.064389445\n").rows,
             (Rows{{"2011-09-26 13:02:25.964389445"}, {"2011-09-26 13:02:26.064389445"}}));
-  EXPECT_EQ(read("2011-09-26 13:02:25 0.5\n2011-09-26 13:02:26 0.25\n").rows,
+  EXPECT_EQ(read_rows("2011-09-26 13:02:25 0.5\n2011-09-26 13:02:26 0.25\n").rows,
             (Rows{{"2011-09-26 13:02:25", "0.5"}, {"2011-09-26 13:02:26", "0.25"}}));
 }
 
@@ -100,7 +100,7 @@ TEST(Table, PlacesAreLinesOfTheFile) {
 TEST(Table, RowsBeyondThoseThatWereLookedAtAreReadTheSame) {
   std::string text = "t;x\n";
   for (int i = 0; i < 1000; ++i) text += std::to_string(i) + ";" + std::to_string(2 * i) + ",5\n";
-  const Read found = read(text);
+  const Read found = read_rows(text);
   ASSERT_THAT(found.rows, SizeIs(1000));
   EXPECT_THAT(found.rows[999], ElementsAre("999", "1998.5"));
 }
