@@ -16,9 +16,9 @@ constexpr std::size_t kLongestLine = 32U << 20U;  // clock errors of a million h
   throw LineError(fmt::format("{}: cannot be read: {}", path, error.what()));
 }
 
-InputFile opened(const std::string& path) {
+InputFile opened(const std::string& path, Pipes pipes) {
   try {
-    return InputFile(path);
+    return InputFile(path, pipes);
   } catch (const FileError& error) {
     fail_to_read_lines(path, error);
   }
@@ -26,8 +26,8 @@ InputFile opened(const std::string& path) {
 
 }  // namespace
 
-LineReader::LineReader(std::string path)
-    : path_(std::move(path)), file_(opened(path_)), buffer_(kBlock, '\0') {}
+LineReader::LineReader(std::string path, Pipes pipes)
+    : path_(std::move(path)), file_(opened(path_, pipes)), buffer_(kBlock, '\0') {}
 
 std::optional<std::string_view> LineReader::next() {
   std::size_t searched = begin_;

@@ -26,7 +26,7 @@ class LineError : public std::runtime_error {
 
 class LineReader {
  public:
-  explicit LineReader(std::string path);
+  explicit LineReader(std::string path, Pipes pipes = Pipes::kRead);
 
   // Valid until the next call; nothing at the end.
   std::optional<std::string_view> next();
