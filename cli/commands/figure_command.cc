@@ -325,8 +325,8 @@ void add_figure_command(CommandLine& line) {
   command.list("--pipelines", "PIPELINE,...", options->pipelines,
                "Only these. Default: all; for a figure of one pipeline the paper's, else\n"
                "yoon2021_both, else the first");
-  command.text("-o,--output", "FILE", options->output,
-               "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
+  command.output("-o,--output", "FILE", options->output,
+                 "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
   command.json_messages();
   command.footer(kFigureExamples);
   command.runs([options] { return draw_figure(*options); }, [options] { check(*options); });
