@@ -367,7 +367,7 @@ void CsvRecordingReader::read_file(const std::string& path, const std::string& n
                                    const ReadProgress& progress) {
   constexpr std::uint64_t kProgressBytes = std::uint64_t{1} << 20;
   try {
-    LineReader lines(path);
+    LineReader lines(path, Pipes::kRefused);
     File file(*this, path, name);
     std::uint64_t reported = 0;
     while (const auto line = lines.next()) {
@@ -476,6 +476,7 @@ std::vector<std::string> camera_names(const std::vector<std::string>& files) {
   }
   // They differ by their extension, if at all.
   for (const std::size_t file : unnamed) names[file] = files[file];
+  for (std::string& name : names) name = printable_name(name);
   return names;
 }
 
