@@ -124,7 +124,7 @@ class IblTimestamps {
 
 std::vector<StampedFrame> read_ibl_timestamps(const std::string& path) {
   try {
-    LineReader lines(path);
+    LineReader lines(path, Pipes::kRefused);
     IblTimestamps timestamps;
     while (const auto line = lines.next()) timestamps.add(*line, lines.place());
     return timestamps.take(lines, path);
@@ -176,7 +176,7 @@ std::vector<StampedFrame> read_ibl_recording(const std::string& path) {
   if (timestamps) return read_ibl_timestamps(path);
   constexpr std::size_t kLargest = std::size_t{512} << 20;
   try {
-    return parse_ibl_frame_data(file_content(path, kLargest), path);
+    return parse_ibl_frame_data(file_content(path, kLargest, Pipes::kRefused), path);
   } catch (const FileError& error) {
     throw CsvError(fmt::format("{}: cannot be read: {}", path, error.what()));
   }

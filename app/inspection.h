@@ -1,7 +1,7 @@
-// What a recording has, for a report (reports/recordings/inspect_report.h).
+// What recordings have, for a report (reports/recordings/inspect_report.h).
 //
-//   const reports::Inspection found = inspected("rig.bag", {}, {"hull_300"});
-//   print(plain(reports::inspect_document({found})));
+//   const std::vector<reports::Inspection> found = inspected({"rig.bag"}, {}, {"hull_300"});
+//   print(plain(reports::inspect_document(found)));
 #pragma once
 
 #include <string>
@@ -13,10 +13,11 @@
 
 namespace simbench::app {
 
-// `path`: a recording folder or a file. Throws what recorded_streams() and, of `device_times`,
-// stamped_streams() do.
-reports::Inspection inspected(const std::string& path, const bags::FileOptions& options,
-                              const std::vector<std::string>& device_times = {},
-                              const ReadProgress& progress = {});
+// `paths`: recording folders and files, each by itself, but with the names of cameras that files of
+// one rig have. Throws what recorded_streams() and, of `device_times`, stamped_streams() do.
+std::vector<reports::Inspection> inspected(const std::vector<std::string>& paths,
+                                           const bags::FileOptions& options,
+                                           const std::vector<std::string>& device_times = {},
+                                           const ReadProgress& progress = {});
 
 }  // namespace simbench::app

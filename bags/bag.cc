@@ -3,17 +3,9 @@
 #include <array>
 
 #include "recording/byte_stream.h"
+#include "recording/file_kind.h"
 
 namespace simbench::bags {
-namespace {
-
-using namespace std::string_view_literals;
-
-constexpr std::string_view kRosbagMagic = "#ROSBAG V2.0"sv;
-constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n"sv;
-constexpr std::string_view kSqliteMagic = "SQLite format 3\0"sv;
-
-}  // namespace
 
 std::string_view to_text(BagFormat format) {
   constexpr std::array<std::string_view, 3> kNames = {"rosbag 2.0", "MCAP", "rosbag2 (SQLite)"};

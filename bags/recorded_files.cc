@@ -24,17 +24,6 @@ std::vector<std::string> files_of(const std::string& path) {
   return fs::is_directory(path) ? rosbag2_files(path) : std::vector<std::string>{path};
 }
 
-// The size of a file, or of all bags of a folder.
-std::uint64_t size_of(const std::string& path) {
-  std::uint64_t bytes = 0;
-  for (const std::string& file : files_of(path)) {
-    std::error_code none;
-    const std::uintmax_t size = fs::file_size(file, none);
-    if (!none) bytes += size;
-  }
-  return bytes;
-}
-
 // The part of a recording that goes on in its next file.
 void append(BagScan& scan, BagScan next) {
   for (RecordedStream& stream : next.streams) {
@@ -87,19 +76,6 @@ void append(BagScan& scan, BagScan next) {
       path, topics));
 }
 
-// Two cameras of different files with one name are told apart by their files.
-void tell_apart(std::vector<RecordedStreams>& recordings, const std::vector<std::string>& names) {
-  std::map<std::string, std::set<std::size_t>> users;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    for (const RecordedStream& stream : recordings[i].streams) users[stream.camera].insert(i);
-  }
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    for (RecordedStream& stream : recordings[i].streams) {
-      if (users[stream.camera].size() > 1) stream.camera = names[i] + "/" + stream.camera;
-    }
-  }
-}
-
 }  // namespace
 
 bool is_bag(const std::string& path) {
@@ -111,16 +87,39 @@ bool is_bag(const std::string& path) {
   }
 }
 
+std::uint64_t recording_bytes(const std::string& path) {
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files_of(path)) {
+    std::error_code none;
+    const std::uintmax_t size = fs::file_size(file, none);
+    if (!none) bytes += size;
+  }
+  return bytes;
+}
+
+void tell_apart(const std::vector<RecordedStreams*>& recordings,
+                const std::vector<std::string>& names) {
+  std::map<std::string, std::set<std::size_t>> users;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    for (const RecordedStream& stream : recordings[i]->streams) users[stream.camera].insert(i);
+  }
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    for (RecordedStream& stream : recordings[i]->streams) {
+      if (users[stream.camera].size() > 1) stream.camera = names[i] + "/" + stream.camera;
+    }
+  }
+}
+
 BagScan scan_recording(const std::string& path, const std::string& name, const ScanOptions& options,
                        const ReadProgress& progress) {
   std::optional<BagScan> all;
-  const std::uint64_t total = size_of(path);
+  const std::uint64_t total = recording_bytes(path);
   std::uint64_t before = 0;
   for (const std::string& file : files_of(path)) {
     BagScan scan = scan_bag(file, name, options, [&](std::uint64_t done, std::uint64_t) {
       if (progress) progress(before + done, total);
     });
-    before += size_of(file);
+    before += recording_bytes(file);
     if (!all) {
       all = std::move(scan);
     } else {
@@ -136,7 +135,7 @@ RecordedStreams read_recorded_files(const std::vector<std::string>& files,
   check_given_once(files);
   const std::vector<std::string> names = camera_names(files);
   std::uint64_t total = 0;
-  for (const std::string& file : files) total += size_of(file);
+  for (const std::string& file : files) total += recording_bytes(file);
   std::uint64_t before = 0;
   CsvRecordingReader csv =
       options.columns ? CsvRecordingReader(*options.columns) : CsvRecordingReader();
@@ -152,9 +151,11 @@ RecordedStreams read_recorded_files(const std::vector<std::string>& files,
     } else {
       csv.read_file(files[i], names[i], counted);
     }
-    before += size_of(files[i]);
+    before += recording_bytes(files[i]);
   }
-  tell_apart(recordings, names);
+  std::vector<RecordedStreams*> of_bags;
+  for (RecordedStreams& recording : recordings) of_bags.push_back(&recording);
+  tell_apart(of_bags, names);
   RecordedStreams all{csv.take(), csv.notes()};
   for (RecordedStreams& recording : recordings) {
     std::ranges::move(recording.streams, std::back_inserter(all.streams));

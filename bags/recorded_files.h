@@ -11,6 +11,7 @@
 // Errors: BagError, CsvError; each names the file.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,13 @@ struct FileOptions {
 
 // Whether it is a bag, or a folder of rosbag2. Throws BagError if it cannot be read.
 bool is_bag(const std::string& path);
+
+// The size of a file, or of all bags of a folder; what cannot be read has none.
+std::uint64_t recording_bytes(const std::string& path);
+
+// Cameras of different files with one name get that of their file before it. A name for each file.
+void tell_apart(const std::vector<RecordedStreams*>& recordings,
+                const std::vector<std::string>& names);
 
 // A bag file, or all those of a rosbag2 folder, as scan_bag() has one.
 BagScan scan_recording(const std::string& path, const std::string& name, const ScanOptions& options,

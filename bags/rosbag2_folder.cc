@@ -95,7 +95,8 @@ std::vector<std::string> rosbag2_files(const std::string& folder) {
   if (fs::exists(metadata)) {
     try {
       // Bags lie in the folder itself, whatever the path in the list (old ones name the folder).
-      for (const std::string& path : listed_paths(file_content(metadata.string(), kMostMetadata))) {
+      for (const std::string& path :
+           listed_paths(file_content(metadata.string(), kMostMetadata, Pipes::kRefused))) {
         if (const fs::path name = fs::path(path).filename(); !name.empty()) {
           files.push_back(root / name);
         }

@@ -113,7 +113,7 @@ class SqliteBagReader {
         sink_(sink),
         progress_(progress),
         notes_(path),
-        size_(InputFile(path).size()) {}
+        size_(InputFile(path, Pipes::kRefused).size()) {}
 
   BagFacts read();
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "cli/process.h"
 #include "evaluation/scoring/ranked_by.h"
 #include "recording/number_in.h"
+#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -53,6 +55,52 @@ std::string check_name(CLI::Option& option) {
     return option.get_validator(0)->get_name();
   } catch (const CLI::OptionNotFound&) {
     return "";
+  }
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code none;
+  return std::filesystem::equivalent(a, b, none);
+}
+
+// The files and folders that a given option or argument names, as its place holder says.
+std::vector<std::string> named_inputs(const CLI::Option& option) {
+  const std::string place = option.get_type_name();
+  const auto holds = [&place](const char* word) { return place.find(word) != std::string::npos; };
+  if (!holds("INPUT") && !holds("FILE") && !holds("DIR") && !holds("ARCHIVE") &&
+      !holds("SCENARIO")) {
+    return {};
+  }
+  std::vector<std::string> inputs = option.results();
+  if (holds("=")) {  // NAME=FILE
+    for (std::string& input : inputs) input.erase(0, input.find('=') + 1);
+  }
+  if (holds("SCENARIO")) {
+    std::erase_if(inputs, [](const std::string& name) {
+      return std::ranges::count(scenarios::builtin_scenarios(), name,
+                                &scenarios::BuiltinScenario::name) > 0;
+    });
+  }
+  return inputs;
+}
+
+// Refuses an output that would replace an input, or a file that no run makes again.
+void check_output(CLI::App& command, CLI::Option& output,
+                  const std::vector<CLI::Option*>& outputs) {
+  if (output.count() == 0) return;
+  const std::string path = output.results().front();
+  std::error_code none;
+  const bool is_folder = std::filesystem::is_directory(path, none);
+  for (CLI::Option* const other : command.get_options({})) {
+    if (std::ranges::find(outputs, other) != outputs.end()) continue;
+    for (const std::string& input : named_inputs(*other)) {
+      if (!is_same_file(path, input)) continue;
+      refuse(output.get_name(), fmt::format("{} is one of the inputs, allowed: another {}", path,
+                                            is_folder ? "folder" : "file"));
+    }
+  }
+  if (const auto why = reports::irreplaceable(path)) {
+    refuse(output.get_name(), fmt::format("{} {}, allowed: another file", path, *why));
   }
 }
 
@@ -110,6 +158,12 @@ Option Command::flag(const std::string& names, bool& value, const std::string& t
 Option Command::text(const std::string& names, const std::string& place, std::string& value,
                      const std::string& text) {
   return Option(with_value(*command_, names, place, value, text, not_empty()));
+}
+
+Option Command::output(const std::string& names, const std::string& place, std::string& value,
+                       const std::string& text) {
+  outputs_.push_back(with_value(*command_, names, place, value, text, not_empty()));
+  return Option(outputs_.back());
 }
 
 Option Command::texts(const std::string& names, const std::string& place,
@@ -257,7 +311,9 @@ void Command::json_flag(const std::string& text, std::function<void()> action) {
 void Command::footer(const std::string& text) { command_->footer(text); }
 
 void Command::runs(Action action, const std::function<void()>& check) {
-  command_->callback([&line = line_, action = std::move(action), check, files = python_files_] {
+  command_->callback([&line = line_, action = std::move(action), check, files = python_files_,
+                      command = command_, outputs = outputs_] {
+    for (CLI::Option* const output : outputs) check_output(*command, *output, outputs);
     if (check) check();
     line.action = [&line, action, files] {
       if (files) import_python(line, *files);

@@ -73,6 +73,12 @@ class Command {
   // An option that may be repeated, or all arguments that follow.
   Option texts(const std::string& names, const std::string& place, std::vector<std::string>& values,
                const std::string& text);
+  // A file or folder that the command writes. Before the action and its check, one that is also an
+  // input is refused, and so is a file that is never replaced (reports/text/output_file.h): no
+  // command destroys its inputs. Inputs are the other options and arguments whose place holder has
+  // the word INPUT, FILE, DIR, ARCHIVE or SCENARIO.
+  Option output(const std::string& names, const std::string& place, std::string& value,
+                const std::string& text);
   // "one,two"; may be repeated.
   Option list(const std::string& names, const std::string& place, std::vector<std::string>& values,
               const std::string& text);
@@ -126,6 +132,7 @@ class Command {
   CommandLine& line_;
   CLI::App* command_;
   std::shared_ptr<std::vector<std::string>> python_files_;  // null without --python
+  std::vector<CLI::Option*> outputs_;
 };
 
 std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);

@@ -1,12 +1,10 @@
 #include "cli/input_options.h"
 
-#include <cstdint>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "app/interrupt.h"
 #include "app/recorded_streams.h"
 #include "cli/messages.h"
-#include "cli/progress.h"
-#include "recording/recording.h"
 
 namespace simbench::cli {
 
@@ -24,20 +22,20 @@ bags::FileOptions file_options(const InputOptions& options) {
   return files;
 }
 
+std::vector<std::string> reading_words(const InputOptions& options) {
+  std::vector<std::string> words;
+  if (!options.topics.empty()) {
+    words.insert(words.end(), {"--topics", fmt::format("{}", fmt::join(options.topics, ","))});
+  }
+  if (!options.columns.empty()) words.insert(words.end(), {"--columns", options.columns});
+  return words;
+}
+
 std::optional<RecordedStreams> read_inputs(const std::vector<std::string>& inputs,
                                            const InputOptions& options) {
-  constexpr unsigned kMegabyte = 20;
-  constexpr std::uint64_t kFewMegabytes = 16;
   const bags::FileOptions files = file_options(options);
-  auto found = watched<RecordedStreams>(
-      [&](const evaluation::Progress& progress) {
-        return app::recorded_streams(inputs, files, [&](std::uint64_t done, std::uint64_t total) {
-          const std::uint64_t all = total >> kMegabyte;
-          if (all >= kFewMegabytes) progress(done >> kMegabyte, all);
-          if (app::InterruptHandler::raised()) throw RecordingCancelled();
-        });
-      },
-      {.unit = "megabyte"});
+  auto found = watched_reading<RecordedStreams>(
+      [&](const ReadProgress& progress) { return app::recorded_streams(inputs, files, progress); });
   if (!found) return std::nullopt;
   for (const std::string& note : found->notes) print_note(note);
   return found;

@@ -16,6 +16,7 @@
 #include "recording/number_in.h"
 #include "recording/text_fields.h"
 #include "reports/text/output_file.h"
+#include "reports/text/plain_text.h"
 #include "reports/text/program_name.h"
 
 namespace simbench::cli {
@@ -55,7 +56,7 @@ std::string_view variable(const char* name) {
 
 void print_result(const std::string& text) {
   errno = 0;
-  std::cout << text << std::flush;
+  std::cout << reports::printable_page(text) << std::flush;
   if (!std::cout) {
     throw reports::OutputError(
         fmt::format("standard output: cannot be written: {}", reports::system_reason()));
@@ -89,7 +90,7 @@ void print_error(const std::string& words, const std::string& next_command) {
 void print_internal_error(const std::string& text) { print_line("internal error", text); }
 
 std::string event_line(const Json& event) {
-  return event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return printable_json(event.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 std::optional<std::size_t> width_of_output() {

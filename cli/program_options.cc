@@ -74,8 +74,8 @@ void add_program_options(Command& command, ProgramOptions& options) {
   command.texts("--program", "NAME=FILE.json", options.programs,
                 "Also run this pipeline, whose hosts are synchronised by real programs,\n"
                 "repeatable (docs/your_program.md); a name alone is a built-in one");
-  command.text("--program-log", "DIR", options.log_folder,
-               "Keep what programs print, and their files, in DIR/PIPELINE/seed1/host0");
+  command.output("--program-log", "DIR", options.log_folder,
+                 "Keep what programs print, and their files, in DIR/PIPELINE/seed1/host0");
 }
 
 scenarios::Scenario load_with_programs(const std::string& scenario,

@@ -31,6 +31,26 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
+// A part of a whole, and the whole with its unit: "2" and "8 runs", "1.65" and "3.71 MB".
+struct Amount {
+  std::string part;
+  std::string whole;
+};
+
+Amount amount(std::uint64_t part, std::uint64_t whole, const std::string& unit) {
+  struct Prefix {
+    double bytes;
+    const char* unit;
+  };
+  constexpr Prefix kPrefixes[] = {{1e9, "GB"}, {1e6, "MB"}, {1e3, "kB"}};
+  for (const Prefix& prefix : kPrefixes) {
+    if (unit != "byte" || static_cast<double>(whole) < prefix.bytes) continue;
+    return {fmt::format("{:.2f}", static_cast<double>(part) / prefix.bytes),
+            fmt::format("{:.2f} {}", static_cast<double>(whole) / prefix.bytes, prefix.unit)};
+  }
+  return {std::to_string(part), counted(whole, unit)};
+}
+
 // Rounded to milliseconds; NaN is written as null.
 double rounded_s(double seconds) { return std::round(seconds * 1000) / 1000; }
 
@@ -119,8 +139,8 @@ std::string Progress::time_left(std::uint64_t done, std::uint64_t total) const {
 void Progress::draw(std::uint64_t done, std::uint64_t total) {
   const std::chrono::duration<double> now = clock_();
   if (drawn_ && now - last_drawn_ < kRedrawInterval && done < total) return;
-  const std::string text = fmt::format("{:3} % of {}{}", done * 100 / total, counted(total, unit_),
-                                       time_left(done, total));
+  const std::string text = fmt::format("{:3} % of {}{}", done * 100 / total,
+                                       amount(done, total, unit_).whole, time_left(done, total));
   // A line that fills the last column would wrap on some terminals.
   const int room = style_.width - 1;
   const int bar = std::min(kWidestBar, room - static_cast<int>(text.size()) - 3);
@@ -139,10 +159,11 @@ void Progress::draw(std::uint64_t done, std::uint64_t total) {
 void Progress::print_line(std::uint64_t done, std::uint64_t total) {
   if (done * 4 < next_quarter_ * total) return;
   const std::uint64_t quarter = done * 4 / total;
+  const auto [part, whole] = amount(done, total, unit_);
   if (quarter == 4) {
-    out_ << fmt::format("{} in {}\n", counted(total, unit_), duration_text(elapsed_s()));
+    out_ << fmt::format("{} in {}\n", whole, duration_text(elapsed_s()));
   } else {
-    out_ << fmt::format("{} of {} ({} %){}\n", done, counted(total, unit_), done * 100 / total,
+    out_ << fmt::format("{} of {} ({} %){}\n", part, whole, done * 100 / total,
                         time_left(done, total));
   }
   out_ << std::flush;
@@ -151,9 +172,9 @@ void Progress::print_line(std::uint64_t done, std::uint64_t total) {
 
 void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t total) {
   if (messages_are_json()) return;
-  std::cerr << fmt::format("interrupted after {} of {}; {}\n", done,
-                           total ? counted(total, watch.unit) : "all " + watch.unit + "s",
-                           watch.kept);
+  const auto [part, whole] = amount(done, total, watch.unit);
+  std::cerr << fmt::format("interrupted after {} of {}; {}\n", part,
+                           total ? whole : "all " + watch.unit + "s", watch.kept);
 }
 
 }  // namespace simbench::cli

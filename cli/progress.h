@@ -4,6 +4,8 @@
 // never wider than the terminal, erased at the end. Elsewhere (a file, a log): a line at the start
 // and one at every quarter. Colour only on a terminal that has it, if wanted (cli/messages.h).
 //
+// Work that is counted in bytes shows them in the unit that suits the whole: "1.65 of 3.71 MB".
+//
 // With --json (cli/messages.h) JSON lines, at most eight of progress a second; "eta_s" is null
 // before the first unit is done:
 //

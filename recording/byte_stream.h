@@ -43,10 +43,10 @@ class ByteStream {
   bool read_exactly(char* to, std::size_t count) { return read_up_to(to, count) == count; }
 };
 
-// A file. Throws FileError.
+// A file; a pipe is none, since it has no positions. Throws FileError.
 class FileBytes final : public ByteStream {
  public:
-  explicit FileBytes(const std::string& path) : file_(path) {}
+  explicit FileBytes(const std::string& path, Pipes pipes = Pipes::kRefused) : file_(path, pipes) {}
   std::size_t read(char* to, std::size_t most) override;
   std::uint64_t skip(std::uint64_t count) override;
 

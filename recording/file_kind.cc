@@ -1,59 +1,107 @@
 #include "recording/file_kind.h"
 
 #include <array>
+#include <filesystem>
+#include <system_error>
+
+#include "scenarios/input_file.h"
 
 namespace simbench {
 namespace {
 
-using Use = FileKind::Use;
+using namespace std::string_view_literals;
 
-struct Signature {
-  std::size_t at;
+// Enough for any of the magics, and for a NUL in data that have none.
+constexpr std::size_t kLookedAt = 4096;
+
+struct Magic {
   std::string_view bytes;
   FileKind kind;
+  std::size_t at = 0;
 };
 
-constexpr auto kSignatures = std::to_array<Signature>({
-    {0, "\x1f\x8b", {"a gzip file", Use::kCompressed}},
-    {0, "\x28\xb5\x2f\xfd", {"a zstd file", Use::kCompressed}},
-    {0, "BZh", {"a bzip2 file", Use::kCompressed}},
-    {0, "\x04\x22\x4d\x18", {"an LZ4 file", Use::kCompressed}},
-    {0, {"\xfd\x37zXZ\0", 6}, {"an xz file", Use::kOther}},
-    {0, "7z\xbc\xaf\x27\x1c", {"a 7-Zip archive", Use::kOther}},
-    {0, "PK\x03\x04", {"a zip archive (npz, xlsx)", Use::kRecording}},
-    {0, "#ROSBAG", {"a bag of ROS 1", Use::kRecording}},
-    {0, "\x89MCAP", {"an MCAP bag", Use::kRecording}},
-    {0, "SQLite format 3", {"an SQLite database (a bag of ROS 2)", Use::kRecording}},
-    {0, "\x93NUMPY", {"an array of NumPy (npy)", Use::kRecording}},
-    {0, "PAR1", {"a Parquet file", Use::kRecording}},
-    {0, "XDF:", {"an XDF recording", Use::kRecording}},
-    {0, "\x89HDF", {"an HDF5 file", Use::kRecording}},
-    {0, "\x1a\x45\xdf\xa3", {"a Matroska video (MKV, WebM)", Use::kRecording}},
-    {4, "ftyp", {"an MP4 or MOV video", Use::kRecording}},
-    {0, "RIFF", {"an AVI or WAV file", Use::kRecording}},
-    {0, "OggS", {"an Ogg file", Use::kRecording}},
-    {0, "\xd4\xc3\xb2\xa1", {"a capture of packets (pcap)", Use::kRecording}},
-    {0, "\x4d\x3c\xb2\xa1", {"a capture of packets (pcap)", Use::kRecording}},
-    {0, "\x0a\x0d\x0d\x0a", {"a capture of packets (pcapng)", Use::kRecording}},
-    {0, "LPKSHHRH", {"a journal of systemd; journalctl --file prints it", Use::kRecording}},
-    {0, "ElfFile", {"an event log of Windows", Use::kRecording}},
-    {0,
-     "\x7f"
+// rosbag: wiki.ros.org/Bags/Format/2.0; MCAP: mcap.dev/spec; SQLite: sqlite.org/fileformat.html;
+// NPY: numpy.lib.format; Parquet and XDF: their specifications; Matroska: RFC 8794; MP4: ISO/IEC
+// 14496-12; HDF5: its file format specification, III.A; zip: PKWARE's APPNOTE; gzip: RFC 1952;
+// zstd: RFC 8878; LZ4: its frame format; pcap: draft-ietf-opsawg-pcap; journals: systemd's
+// JOURNAL_FILE_FORMAT.
+constexpr auto kMagics = std::to_array<Magic>({
+    {kRosbagMagic, {"a rosbag 2.0 bag"}},
+    {kMcapMagic, {"an MCAP file"}},
+    {kSqliteMagic, {"an SQLite file"}},
+    {"\x93NUMPY", {"a NumPy array"}},
+    {"PAR1", {"a Parquet file"}},
+    {"XDF:", {"an XDF file"}},
+    {"\x1a\x45\xdf\xa3", {"a Matroska file"}},
+    {"ftyp", {"an MP4 file"}, 4},
+    {"RIFF", {"an AVI or WAV file"}},
+    {"\x89HDF\r\n\x1a\n", {"an HDF5 file"}},
+    {"PK\x03\x04", {"a zip file"}},
+    {"PK\x05\x06", {"a zip file"}},
+    {"\xfd\x37zXZ\0"sv, {"an xz file"}},
+    {"7z\xbc\xaf\x27\x1c", {"a 7-Zip file"}},
+    {"\x1f\x8b", {"a gzip file", true}},
+    {"\x28\xb5\x2f\xfd", {"a zstd file", true}},
+    {"BZh", {"a bzip2 file", true}},
+    {"\x04\x22\x4d\x18", {"an LZ4 file", true}},
+    {"LPKSHHRH", {"a journal of systemd (journalctl --file prints it)"}},
+    {"ElfFile", {"an event log of Windows"}},
+    {"\x7f"
      "ELF",
-     {"a program (ELF)", Use::kOther}},
-    {0, "\x89PNG", {"a PNG picture", Use::kOther}},
-    {0, "\xff\xd8\xff", {"a JPEG picture", Use::kOther}},
-    {0, "%PDF", {"a PDF document", Use::kOther}},
+     {"a program"}},
+    {"\xd4\xc3\xb2\xa1", {"a pcap file"}},
+    {"\xa1\xb2\xc3\xd4", {"a pcap file"}},
+    {"\x4d\x3c\xb2\xa1", {"a pcap file"}},
+    {"\xa1\xb2\x3c\x4d", {"a pcap file"}},
+    {"\x0a\x0d\x0d\x0a", {"a pcapng file"}},
+    {"\x89PNG", {"a PNG picture"}},
+    {"\xff\xd8\xff", {"a JPEG picture"}},
+    {"%PDF", {"a PDF document"}},
 });
+
+// Text that is a recording: recording/rs_csv.h, recording/recording_folder.h.
+constexpr std::array<Magic, 2> kTexts = {
+    {{"Stream Type,", {"a CSV recording"}}, {"order,camera,", {"a part of a recording folder"}}}};
+
+template <class Magics>
+std::optional<FileKind> kind_among(const Magics& magics, std::string_view first) {
+  for (const Magic& magic : magics) {
+    if (first.size() > magic.at && first.substr(magic.at).starts_with(magic.bytes)) {
+      return magic.kind;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string_view> lasting_kind_of(std::string_view first) {
+  if (first.starts_with("%PDF")) return std::nullopt;
+  if (const auto kind = file_kind(first)) return kind->what;
+  if (const auto kind = kind_among(kTexts, first)) return kind->what;
+  const bool is_text = first.find('\0') == std::string_view::npos;
+  return is_text ? std::nullopt : std::optional("a binary file"sv);
+}
 
 }  // namespace
 
 std::optional<FileKind> file_kind(std::string_view first_bytes) {
-  for (const Signature& signature : kSignatures) {
-    if (first_bytes.size() < signature.at) continue;
-    if (first_bytes.substr(signature.at).starts_with(signature.bytes)) return signature.kind;
+  return kind_among(kMagics, first_bytes);
+}
+
+std::optional<std::string_view> lasting_kind(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return std::nullopt;
+  std::array<char, kLookedAt> first{};
+  std::size_t size = 0;
+  try {
+    InputFile file(path, Pipes::kRefused);
+    while (const std::size_t more = file.read(first.data() + size, first.size() - size)) {
+      size += more;
+      if (size == first.size()) break;
+    }
+  } catch (const FileError&) {
+    return "a file that cannot be read";
   }
-  return std::nullopt;
+  return lasting_kind_of({first.data(), size});
 }
 
 }  // namespace simbench

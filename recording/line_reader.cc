@@ -17,9 +17,9 @@ constexpr std::size_t kLongestLine = 32U << 20U;  // clock errors of a million h
   throw LineError(fmt::format("{}: cannot be read: {}", path, error.what()));
 }
 
-TextFile opened(const std::string& path) {
+TextFile opened(const std::string& path, Pipes pipes) {
   try {
-    return TextFile(path);
+    return TextFile(path, pipes);
   } catch (const FileError& error) {
     fail_to_read_lines(path, error);
   }
@@ -27,8 +27,8 @@ TextFile opened(const std::string& path) {
 
 }  // namespace
 
-LineReader::LineReader(std::string path)
-    : path_(std::move(path)), file_(opened(path_)), buffer_(kBlock, '\0') {}
+LineReader::LineReader(std::string path, Pipes pipes)
+    : path_(std::move(path)), file_(opened(path_, pipes)), buffer_(kBlock, '\0') {}
 
 LineReader::LineReader(std::string path, std::string_view text)
     : path_(std::move(path)), buffer_(text), end_(buffer_.size()) {}

@@ -28,7 +28,7 @@ class LineError : public std::runtime_error {
 
 class LineReader {
  public:
-  explicit LineReader(std::string path);
+  explicit LineReader(std::string path, Pipes pipes = Pipes::kRead);
   // Text as if it were the content of `path`.
   LineReader(std::string path, std::string_view text);
 

@@ -122,7 +122,7 @@ class CaptureReader {
 
 LineReader lines_of(const std::string& path) {
   try {
-    return LineReader(path);
+    return LineReader(path, Pipes::kRefused);
   } catch (const LineError& error) {
     throw RecordingFolderError(error.what());
   }

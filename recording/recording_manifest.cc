@@ -260,7 +260,7 @@ RecordingManifest read_manifest(const std::string& folder) {
         "{}: is no recording, it has no manifest.json; `simbench record` makes one", folder));
   }
   try {
-    return parse_manifest(file_content(path, kLargestManifest), path);
+    return parse_manifest(file_content(path, kLargestManifest, Pipes::kRefused), path);
   } catch (const FileError& failure) {
     throw RecordingFolderError(fmt::format("{}: cannot be read: {}", path, failure.what()));
   }

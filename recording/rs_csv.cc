@@ -366,7 +366,7 @@ void CsvRecordingReader::File::check_naming(const Naming& naming, std::string_vi
 void CsvRecordingReader::read_file(const std::string& path, const std::string& name,
                                    const ReadProgress& progress) {
   try {
-    File(*this, path, name, progress).read(LineReader(path));
+    File(*this, path, name, progress).read(LineReader(path, Pipes::kRefused));
   } catch (const LineError& error) {
     throw CsvError(error.what());
   }
@@ -430,6 +430,7 @@ std::vector<std::string> camera_names(const std::vector<std::string>& files) {
   }
   // They differ by their extension, if at all.
   for (const std::size_t file : unnamed) names[file] = files[file];
+  for (std::string& name : names) name = printable_name(name);
   return names;
 }
 

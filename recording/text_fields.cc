@@ -26,37 +26,69 @@ std::string quoted_bytes(std::string_view bytes) {
 
 namespace {
 
-// The length of the UTF-8 character at the begin of `text` that is no control character; else 0.
-std::size_t printable_length(std::string_view text) {
+// The UTF-8 character at the begin of a text; of no length where there is none.
+struct Character {
+  std::size_t length = 0;
+  char32_t code = 0;
+};
+
+Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
   const unsigned first = byte(0);
-  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  if (first < 0x80) return {1, first};
   const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return {};
+  char32_t code = first & (0x7fU >> length);
   for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0U) != 0x80U) return 0;
+    if ((byte(i) & 0xc0U) != 0x80U) return {};
+    code = code << 6U | (byte(i) & 0x3fU);
   }
-  const unsigned second = byte(1);
-  const bool control = first == 0xc2 && second < 0xa0;  // C1
-  const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
-  const bool no_character = (first == 0xed && second >= 0xa0) || (first == 0xf4 && second >= 0x90);
-  return control || overlong || no_character ? 0 : length;
+  const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  const bool surrogate = code >= 0xd800 && code < 0xe000;
+  return overlong || surrogate || code > 0x10ffff ? Character{} : Character{length, code};
+}
+
+// Whether it is obeyed, or never seen, instead of shown.
+bool is_obeyed(char32_t code) {
+  return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e ||
+         code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
+         (code >= 0x2060 && code <= 0x206f) || code == 0xfeff;
+}
+
+// Replaces what is obeyed or no UTF-8 (a byte at a time) by escaped(bytes, code).
+template <class Escaped>
+std::string with_escapes(std::string_view text, const Escaped& escaped) {
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    const Character next = first_character(text);
+    const std::string_view bytes = text.substr(0, std::max<std::size_t>(next.length, 1));
+    if (next.length == 0 || is_obeyed(next.code)) {
+      shown += escaped(bytes, next.code);
+    } else {
+      shown += bytes;
+    }
+    text.remove_prefix(bytes.size());
+  }
+  return shown;
 }
 
 }  // namespace
 
 std::string printable_name(std::string_view name) {
-  std::string text;
-  while (!name.empty()) {
-    const std::size_t length = printable_length(name);
-    if (length == 0) {
-      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(name.front()));
-    } else {
-      text += name.substr(0, length);
-    }
-    name.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return text;
+  return with_escapes(name, [](std::string_view bytes, char32_t) {
+    std::string text;
+    for (const char byte : bytes)
+      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+    return text;
+  });
+}
+
+std::string printable_json(std::string_view json) {
+  return with_escapes(json, [](std::string_view bytes, char32_t code) {
+    if (bytes == "\n") return std::string(bytes);  // between values: strings have it escaped
+    return fmt::format("\\u{:04x}", code == 0 ? 0xfffd : static_cast<unsigned>(code));
+  });
 }
 
 std::string printable_lines(std::string_view text) {

@@ -32,11 +32,16 @@ class TextFieldError : public std::runtime_error {
 
 // For a message: in quotes, cut after 40 bytes, what is no printable ASCII as \xHH.
 std::string quoted_bytes(std::string_view bytes);
-// A name that a terminal shows and does not obey: control characters, and what is no UTF-8, as
-// \xHH; the rest as it is.
+// A name that a terminal, a table or a page shows and does not obey. Written as \xHH is what is no
+// UTF-8, and what controls a terminal (C0, DEL, C1), the direction of text (U+061C, U+200E, U+200F,
+// U+202A to U+202E, U+2066 to U+2069), its lines (U+2028, U+2029; U+0085 is of C1), or is never
+// seen (U+2060 to U+206F, U+FEFF). The rest stays, also U+200B to U+200D: scripts need them for the
+// shape of letters and for line breaks, and they neither reorder a text nor end a line.
 std::string printable_name(std::string_view name);
 // Keeps the line ends of text of several lines.
 std::string printable_lines(std::string_view text);
+// JSON text whose strings mean the same, with \uXXXX for those characters.
+std::string printable_json(std::string_view json);
 
 template <std::integral Number>
 void append_number(std::string& line, Number value) {

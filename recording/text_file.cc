@@ -167,11 +167,11 @@ std::size_t mark_size(std::string_view first) {
 // From the file's bytes to those of its text.
 class TextFile::Layers {
  public:
-  explicit Layers(const std::string& path)
-      : file_(path == "-" ? "/dev/stdin" : path), packed_(file_) {
+  Layers(const std::string& path, Pipes pipes)
+      : file_(path == "-" ? "/dev/stdin" : path, pipes), packed_(file_) {
     const std::string_view first = packed_.look();
     if (const std::optional<FileKind> kind = file_kind(first)) {
-      if (kind->use != FileKind::Use::kCompressed) {
+      if (!kind->holds_another) {
         throw FileError(fmt::format("it is {}, no text", kind->what));
       }
       inflated_ = inflated(*compression_of(first), packed_);
@@ -210,8 +210,8 @@ auto readable(const Action& action) {
 
 }  // namespace
 
-TextFile::TextFile(const std::string& path)
-    : layers_(readable([&] { return std::make_unique<Layers>(path); })) {}
+TextFile::TextFile(const std::string& path, Pipes pipes)
+    : layers_(readable([&] { return std::make_unique<Layers>(path, pipes); })) {}
 
 TextFile::~TextFile() = default;
 TextFile::TextFile(TextFile&&) noexcept = default;

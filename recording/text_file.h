@@ -19,11 +19,13 @@
 #include <memory>
 #include <string>
 
+#include "scenarios/input_file.h"
+
 namespace simbench {
 
 class TextFile {
  public:
-  explicit TextFile(const std::string& path);
+  explicit TextFile(const std::string& path, Pipes pipes = Pipes::kRead);
   ~TextFile();
   TextFile(TextFile&&) noexcept;
   TextFile& operator=(TextFile&&) noexcept;

@@ -20,21 +20,32 @@ ReadFunction read_function = ::read;
 
 [[noreturn]] void fail_with(int reason) { throw FileError(std::strerror(reason)); }
 
+// Why a file of this mode is not read; null if it is.
+const char* refusal(mode_t mode, Pipes pipes) {
+  if (S_ISDIR(mode)) return "it is a folder";
+  if (S_ISCHR(mode) || S_ISBLK(mode)) return "it is a device";
+  if (S_ISSOCK(mode)) return "it is a socket; allowed: a file";
+  if (S_ISFIFO(mode) && pipes == Pipes::kRefused) return "it is a pipe; allowed: a file";
+  return nullptr;
+}
+
 }  // namespace
 
-InputFile::InputFile(const std::string& path) {
+InputFile::InputFile(const std::string& path, Pipes pipes) {
+  struct stat found {};
+  // A socket cannot be opened.
+  if (stat(path.c_str(), &found) == 0 && S_ISSOCK(found.st_mode)) {
+    throw FileError(refusal(found.st_mode, pipes));
+  }
   // Without blocking: opening a pipe would wait for its other end.
   file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file_ < 0) fail_with(errno);
-  struct stat found {};
   const bool known = fstat(file_, &found) == 0;
   const int reason = errno;
-  const bool folder = known && S_ISDIR(found.st_mode);
-  const bool device = known && (S_ISCHR(found.st_mode) || S_ISBLK(found.st_mode));
-  if (!known || folder || device) {
+  const char* const refused = known ? refusal(found.st_mode, pipes) : nullptr;
+  if (!known || refused != nullptr) {
     close(file_);
-    if (folder) throw FileError("it is a folder");
-    if (device) throw FileError("it is a device");
+    if (refused != nullptr) throw FileError(refused);
     fail_with(reason);
   }
   waits_ = !S_ISREG(found.st_mode);
@@ -60,8 +71,8 @@ void InputFile::seek(std::uint64_t position) {
   if (lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) fail_with(errno);
 }
 
-std::string file_content(const std::string& path, std::size_t most) {
-  InputFile file(path);
+std::string file_content(const std::string& path, std::size_t most, Pipes pipes) {
+  InputFile file(path, pipes);
   const std::string too_large = fmt::format("found more than {} bytes", most);
   if (file.size() > most) throw FileTooLarge(too_large);
   // One byte more than there should be: the last read finds the end.

@@ -1,8 +1,10 @@
 // Reads the files that a user names. Each read is checked: an error is an error, never the end of
 // the file.
 //
-// Folders and devices are refused; a device may have no end. A pipe is read until its writers close
-// it. Whole files have a limit, which also ends a pipe that never ends.
+// Folders, devices and sockets are refused; a device may have no end. A pipe is read until its
+// writers close it, or refused where only a file is of use (Pipes::kRefused): a recording is read
+// from several places, and a pipe without a writer would be waited for without a word. Whole files
+// have a limit, which also ends a pipe that never ends.
 //
 // Errors: FileError; its what() is the reason alone ("Input/output error"), for a message that
 // names the file.
@@ -33,9 +35,11 @@ class FileTooLarge : public FileError {
   using FileError::FileError;
 };
 
+enum class Pipes : std::uint8_t { kRead, kRefused };
+
 class InputFile {
  public:
-  explicit InputFile(const std::string& path);
+  explicit InputFile(const std::string& path, Pipes pipes = Pipes::kRead);
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -55,7 +59,7 @@ class InputFile {
 };
 
 // The whole content. Throws FileTooLarge, a FileError, for more than `most` bytes.
-std::string file_content(const std::string& path, std::size_t most);
+std::string file_content(const std::string& path, std::size_t most, Pipes pipes = Pipes::kRead);
 
 // For tests of read errors: replaces the system's read() and returns the one before.
 using ReadFunction = ssize_t (*)(int file, void* to, std::size_t most);

@@ -109,11 +109,11 @@ void add_clocks_command(CommandLine& line) {
   command.python();
   add_program_options(command, options->programs);
   command.format(options->format, {"table", "markdown", "latex", "csv", "tidy", "json"});
-  command.text("-o,--output", "DIR", options->output,
-               "Write a result archive to this folder: manifest.json, results.json, curves.csv,\n"
-               "series.csv (time errors of the first seed). Replaces an earlier archive there");
-  command.text("--figure", "FILE", options->figure,
-               "Draw ADEV, TDEV and MTIE over tau to this file (.svg or .pdf, by gnuplot)");
+  command.output("-o,--output", "DIR", options->output,
+                 "Write a result archive to this folder: manifest.json, results.json, curves.csv,\n"
+                 "series.csv (time errors of the first seed). Replaces an earlier archive there");
+  command.output("--figure", "FILE", options->figure,
+                 "Draw ADEV, TDEV and MTIE over tau to this file (.svg or .pdf, by gnuplot)");
   command.footer(kClocksExamples);
   command.runs([options] { return clocks(*options); });
 }

@@ -14,6 +14,7 @@
 #include "cli/commands/commands.h"
 #include "cli/parameter_text.h"
 #include "recording/collected.h"
+#include "recording/text_fields.h"
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/document.h"
@@ -98,12 +99,12 @@ std::string pointers_text(const scenarios::Scenario& scenario, const std::string
 
 // The part of the resolved scenario at a pointer. Throws InputError if there is none.
 std::string scenario_json(const scenarios::Scenario& scenario, const std::string& pointer) {
-  if (pointer.empty()) return scenario.resolved_json() + "\n";
+  if (pointer.empty()) return printable_json(scenario.resolved_json()) + "\n";
   lines_below(scenario, pointer);
   try {
-    return ordered_json::parse(scenario.resolved_json())
-               .at(ordered_json::json_pointer(pointer))
-               .dump(2) +
+    return printable_json(ordered_json::parse(scenario.resolved_json())
+                              .at(ordered_json::json_pointer(pointer))
+                              .dump(2)) +
            "\n";
   } catch (const ordered_json::exception&) {
     throw InputError(

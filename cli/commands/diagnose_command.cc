@@ -76,9 +76,9 @@ void add_diagnose_command(CommandLine& line) {
   add_input_options(command, options->inputs);
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
-  command.text("--html", "FILE.html", options->html,
-               "Write a page, too: the answer, how each camera's phase moves, the tables. It\n"
-               "is one file, which opens offline");
+  command.output("--html", "FILE.html", options->html,
+                 "Write a page, too: the answer, how each camera's phase moves, the tables. It\n"
+                 "is one file, which opens offline");
   command.footer(kDiagnoseExamples);
   command.runs([options] { return run_diagnose(*options); });
 }

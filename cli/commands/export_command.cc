@@ -119,8 +119,8 @@ void add_export_command(CommandLine& line) {
   command.list("--stamps", "NAME,...", options->stamps,
                "In place of sets: every frame, with its global stamps by these device_times");
   add_input_options(command, options->inputs);
-  command.text("-o,--output", "FILE.csv", options->output,
-               "The file to write. Default: standard output. Replaces an earlier file");
+  command.output("-o,--output", "FILE.csv", options->output,
+                 "The file to write. Default: standard output. Replaces an earlier file");
   command.footer(kExportExamples);
   command.runs([options] { return run_export(*options); });
 }

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "app/figure_source.h"
-#include "app/recorded_streams.h"
 #include "app/recordings.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
@@ -209,10 +208,11 @@ std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& comman
 }
 
 // What the stamps of a rig show, of which nothing else is known.
-app::ArchiveFigures make_of_stamps(const FigureCommand& command) {
-  const RecordedStreams rig = app::recorded_streams(command.inputs, file_options(command.reading));
-  return {.figures = {reports::diagnose_figure(evaluation::diagnose(rig.streams, {}))},
-          .notes = rig.notes};
+std::optional<app::ArchiveFigures> make_of_stamps(const FigureCommand& command) {
+  const auto rig = read_inputs(command.inputs, command.reading);
+  if (!rig) return std::nullopt;
+  return app::ArchiveFigures{
+      .figures = {reports::diagnose_figure(evaluation::diagnose(rig->streams, {}))}, .notes = {}};
 }
 
 std::optional<app::ArchiveFigures> make_figures(const FigureCommand& command,
@@ -325,8 +325,8 @@ void add_figure_command(CommandLine& line) {
   command.list("--pipelines", "PIPELINE,...", options->pipelines,
                "Only these. Default: all; for a figure of one pipeline the paper's, else\n"
                "yoon2021_both, else the first");
-  command.text("-o,--output", "FILE", options->output,
-               "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
+  command.output("-o,--output", "FILE", options->output,
+                 "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
   command.json_messages();
   command.footer(kFigureExamples);
   command.runs([options] { return draw_figure(*options); }, [options] { check(*options); });

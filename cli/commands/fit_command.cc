@@ -213,8 +213,8 @@ void add_fit_command(CommandLine& line) {
                   "Fit a scenario to a recording: the simulator with a rig's own numbers");
   command.texts("inputs", "INPUT...", options->inputs, kInputsText).required();
   command
-      .text("-o,--output", "FILE.json", options->output,
-            "The scenario file to write. Replaces an earlier file")
+      .output("-o,--output", "FILE.json", options->output,
+              "The scenario file to write. Replaces an earlier file")
       .required();
   command.text("--base", "SCENARIO", options->base,
                "Scenario (name or file) that gives what is not fitted.\n"

@@ -85,12 +85,12 @@ void add_gate_command(CommandLine& line) {
             "An archive that `simbench run --output` wrote, or a results.json")
       .required();
   command.text("--baseline", "FILE", options->baseline, "The baseline to compare with");
-  command.text("--save-baseline", "FILE", options->save_baseline,
-               "Write the result as a baseline; keeps the margins of an earlier one there");
+  command.output("--save-baseline", "FILE", options->save_baseline,
+                 "Write the result as a baseline; keeps the margins of an earlier one there");
   command.word("--mode", "MODE", options->mode, {"exact", "statistical"},
                "One of: exact, statistical. Default: exact");
   command.format(options->format, {"text", "json", "junit"});
-  command.text("--junit", "FILE", options->junit, "Write JUnit XML to this file as well");
+  command.output("--junit", "FILE", options->junit, "Write JUnit XML to this file as well");
   command.footer(kGateExamples);
   command.runs([options] { return gate(*options); });
 }

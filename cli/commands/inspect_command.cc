@@ -6,7 +6,6 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
-#include "cli/progress.h"
 #include "reports/recordings/inspect_report.h"
 
 namespace simbench::cli {
@@ -36,18 +35,14 @@ struct InspectOptions {
 
 int run_inspect(const InspectOptions& options) {
   const bags::FileOptions files = file_options(options.inputs);
-  const auto found = watched<std::vector<reports::Inspection>>(
-      [&](const evaluation::Progress& progress) {
-        std::vector<reports::Inspection> all;
-        for (const std::string& file : options.files) {
-          all.push_back(app::inspected(file, files, options.device_times, progress));
-        }
-        return all;
-      },
-      {.unit = "megabyte"});
+  const auto found =
+      watched_reading<std::vector<reports::Inspection>>([&](const ReadProgress& progress) {
+        return app::inspected(options.files, files, options.device_times, progress);
+      });
   if (!found) return kInterrupted;
-  print_result(options.format == "json" ? reports::inspect_json(*found)
-                                        : plain(reports::inspect_document(*found)));
+  print_result(options.format == "json"
+                   ? reports::inspect_json(*found)
+                   : plain(reports::inspect_document(*found, reading_words(options.inputs))));
   return kOk;
 }
 

@@ -40,7 +40,7 @@ int make_key(const std::string& file) {
 void add_keygen_command(CommandLine& line) {
   auto file = std::make_shared<std::string>();
   Command command(line, "keygen", "Make the key that the hosts of a rig share");
-  command.text("file", "FILE", *file, "Where to write it; an existing file is not overwritten")
+  command.output("file", "FILE", *file, "Where to write it; an existing file is not overwritten")
       .required();
   command.json_messages();
   command.footer(kKeygenExamples);

@@ -266,8 +266,8 @@ void add_node_program_options(Command& command, NodeOptions& options) {
                    "For tests: run the programs of a conductor's pipeline, confined, around the\n"
                    "node's software clock; their network is on this interface");
   command
-      .text("--program-log", "DIR", options.program_log,
-            "Keep what programs print, and their files, in DIR/PIPELINE/host0")
+      .output("--program-log", "DIR", options.program_log,
+              "Keep what programs print, and their files, in DIR/PIPELINE/host0")
       .needs(on);
 }
 
@@ -281,9 +281,9 @@ void add_node_command(CommandLine& line) {
   command.text("--key-file", "FILE", options->key_file,
                "The rig's key (see simbench keygen). Without one the node speaks\n"
                "to its own machine only");
-  command.text("--journal", "DIR", options->journal,
-               "Folder for the recordings of the newest 100 sessions.\n"
-               "Default: ~/.local/state/simbench/HOST");
+  command.output("--journal", "DIR", options->journal,
+                 "Folder for the recordings of the newest 100 sessions.\n"
+                 "Default: ~/.local/state/simbench/HOST");
   add_clock_options(command, *options);
   add_node_program_options(command, *options);
   command.footer(kNodeExamples);

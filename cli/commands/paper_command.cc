@@ -124,9 +124,10 @@ void add_paper_command(CommandLine& line) {
   command.flag("--no-table-4", options->no_table_4,
                "Leave out Table 4, the reconstruction, which takes longest");
   command.format(options->format, {"table", "markdown", "latex", "json"});
-  command.text("-o,--output", "DIR", options->output,
-               "Write all of it to this folder: paper.html with the figures, paper.txt,\n"
-               "paper.json, and the result archive of each rate. Replaces an earlier result there");
+  command.output(
+      "-o,--output", "DIR", options->output,
+      "Write all of it to this folder: paper.html with the figures, paper.txt,\n"
+      "paper.json, and the result archive of each rate. Replaces an earlier result there");
   command.footer(kPaperExamples);
   command.runs([options] { return run_paper(*options); });
 }

@@ -195,9 +195,9 @@ void add_reconstruct_command(CommandLine& line) {
   add_subject_options(command, *options);
   add_curve_options(command, *options);
   command.format(options->format, {"table", "json", "csv"});
-  command.text("-o,--output", "DIR", options->output,
-               "Write everything to this folder, with meshes and pictures. Replaces an earlier\n"
-               "result there");
+  command.output("-o,--output", "DIR", options->output,
+                 "Write everything to this folder, with meshes and pictures. Replaces an earlier\n"
+                 "result there");
   command.footer(kExamples);
   command.runs([options] { return run_reconstruct(*options); });
 }

@@ -137,7 +137,7 @@ void add_record_command(CommandLine& line) {
   command.text("--collect", "SESSION", options->backend.collect_session,
                "On a rig: instead of a new capture, fetch what the nodes have of this session");
   command.json_messages();
-  command.text("-o,--output", "DIR", options->output, "The folder, which must be new or empty")
+  command.output("-o,--output", "DIR", options->output, "The folder, which must be new or empty")
       .required();
   command.footer(kRecordExamples);
   command.runs([options] { return record(*options); });

@@ -119,9 +119,9 @@ void add_replay_command(CommandLine& line) {
                "unverified");
   command.rank_by(options->rank_by);
   command.format(options->format, {"table", "markdown", "latex", "json", "csv", "tidy"});
-  command.text("-o,--output", "DIR", options->output,
-               "Write manifest.json, results.json, frames.csv and hosts.csv to this folder, as\n"
-               "`simbench run` does. Replaces an earlier result there");
+  command.output("-o,--output", "DIR", options->output,
+                 "Write manifest.json, results.json, frames.csv and hosts.csv to this folder, as\n"
+                 "`simbench run` does. Replaces an earlier result there");
   command.footer(kReplayExamples);
   command.runs([options] { return run_replay(*options); });
 }

@@ -115,9 +115,9 @@ void add_report_command(CommandLine& line) {
       .texts("archives", "ARCHIVE...", options->archives,
              "Folders that `simbench run --output` wrote, or a results.json alone")
       .required();
-  command.text("-o,--output", "FILE.html", options->output,
-               "The file. Replaces an earlier one. Default for one archive: beside it,\n"
-               "results/monday.html of results/monday");
+  command.output("-o,--output", "FILE.html", options->output,
+                 "The file. Replaces an earlier one. Default for one archive: beside it,\n"
+                 "results/monday.html of results/monday");
   command.whole_number("--seeds-in-detail", "N", options->detail.seeds, 1, kMostSeedsInDetail,
                        "How many seeds to show with stamps, clocks and single pulses.\n"
                        "Default: 4, fewer with more than 8 pipelines");

@@ -236,9 +236,9 @@ void add_run_command(CommandLine& line) {
   add_program_options(command, options->programs);
   add_backend_options(command, options->backend);
   command.format(options->format, {"table", "markdown", "latex", "csv", "tidy", "json"});
-  command.text("-o,--output", "DIR", options->output,
-               "Write a result archive to this folder: manifest.json, results.json,\n"
-               "frames.csv, hosts.csv. Replaces an earlier archive there");
+  command.output("-o,--output", "DIR", options->output,
+                 "Write a result archive to this folder: manifest.json, results.json,\n"
+                 "frames.csv, hosts.csv. Replaces an earlier archive there");
   const Option quiet =
       command.flag("--quiet", options->quiet, "Print the answer alone: one paragraph");
   command

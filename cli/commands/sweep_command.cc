@@ -228,8 +228,8 @@ void add_sweep_command(CommandLine& line) {
   command.rank_by(options->rank_by);
   command.python();
   command.jobs(options->jobs, "Threads. Default: one for every core; under MPI one for every rank");
-  command.text("-o,--output", "DIR", options->output,
-               "The folder of the sweep. An unfinished sweep in it is continued");
+  command.output("-o,--output", "DIR", options->output,
+                 "The folder of the sweep. An unfinished sweep in it is continued");
   command.flag("--restart", options->restart, "Remove the sweep in the folder, and start anew");
   command.json_messages();
   command.footer(kSweepExamples);

@@ -165,8 +165,8 @@ void add_trace_command(CommandLine& line) {
   command.format(options->format, {"chrome", "csv"});
   command.json_messages();
   add_window_options(command, *options);
-  command.text("-o,--output", "FILE", options->output,
-               "The file, written as a whole or not at all. Default: -, standard output");
+  command.output("-o,--output", "FILE", options->output,
+                 "The file, written as a whole or not at all. Default: -, standard output");
   command.footer(kTraceExamples);
   command.runs([options] { return run_trace(*options); });
 }

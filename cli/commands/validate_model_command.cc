@@ -249,10 +249,10 @@ void add_measurement_options(Command& command, ValidateModelOptions& options) {
                "Seed of the first repetition's clocks, cameras and relay. Default: 1");
   command.text("--measured", "FILE", options.measured,
                "Instead of measuring now: a study that --save wrote");
-  command.text("--save", "FILE", options.save,
-               "Write the measured study to this file, with date and machine");
-  command.text("--stack", "FILE", options.stack,
-               "Instead of an experiment: measure this machine's network stack, into this file");
+  command.output("--save", "FILE", options.save,
+                 "Write the measured study to this file, with date and machine");
+  command.output("--stack", "FILE", options.stack,
+                 "Instead of an experiment: measure this machine's network stack, into this file");
 }
 
 }  // namespace

@@ -207,7 +207,11 @@ class Findings {
 
   void add_clock() {
     const StreamFacts& facts = camera_->facts;
-    if (facts.stamped_by_host) {
+    if (facts.one_clock) {
+      add("one_clock",
+          "its arrivals are its stamps, as from one column of a file: there is one clock only, so "
+          "that nothing tells a camera's clock from its host's");
+    } else if (facts.stamped_by_host) {
       add_host_clock();
     } else if (facts.global_time) {
       add("global_time",
@@ -441,6 +445,12 @@ std::vector<std::string> cannot_know(const Diagnosis& diagnosis) {
     texts.emplace_back(
         "what the cameras' clocks say: header stamps are of a computer, which made them when a "
         "driver had the frame. Record the metadata topics, or with hardware stamps.");
+  }
+  if (std::any_of(diagnosis.cameras.begin(), diagnosis.cameras.end(),
+                  [](const CameraDiagnosis& c) { return c.facts.one_clock; })) {
+    texts.emplace_back(
+        "the delays of frames: arrivals and sensor stamps are one column, so that there is one "
+        "clock only. Record both.");
   }
   const std::string host = diagnosis.cameras.empty() ? "" : diagnosis.cameras.front().host;
   if (std::any_of(diagnosis.cameras.begin(), diagnosis.cameras.end(),

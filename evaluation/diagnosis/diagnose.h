@@ -14,10 +14,11 @@
 // Groups (diagnose_group.cc): the cameras that have one kind of stream follow one trigger if their
 // periods in host time agree within the fits' uncertainty (four standard deviations), also at a
 // whole multiple of the common period. The largest set that agrees is the standard for the others.
-// The verdict "works" needs a resolution of 5 ppm: free-running cameras rarely agree that well, and
-// two of them by chance once in ten. Periods are compared between cameras whose arrivals were
-// stamped by one clock. Those of different hosts can differ because the hosts' clocks do; stamps
-// cannot tell these cases apart.
+// It is of cameras whose periods are known well enough for the verdict "works"; if there is none,
+// and some disagree all the same, of any. The verdict "works" needs a resolution of 5 ppm:
+// free-running cameras rarely agree that well, and two of them by chance once in ten. Periods are
+// compared between cameras whose arrivals were stamped by one clock. Those of different hosts can
+// differ because the hosts' clocks do; stamps cannot tell these cases apart.
 //
 // What too few frames leave undefined is NaN. Complexity: O(n log n) in the frames of a stream.
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.
@@ -77,6 +78,7 @@ struct StreamFacts {
   double future_ms = 0;            // by how much, at most
   std::int64_t wraps = 0;          // of the 32-bit microsecond register
   bool global_time = false;        // stamps count from 1970: they are no camera's
+  bool one_clock = false;          // arrivals are the stamps (camera_statistics.h)
   // The recording says these two: RecordedStream has what they mean.
   bool counted = true;
   bool stamped_by_host = false;
@@ -136,8 +138,8 @@ struct GroupVerdict {
   std::string stream;
   SyncStatus status = SyncStatus::kCannotBeTold;
   std::string reason;
-  double period_ms = kNan;  // common, in host time
-  double resolution_ppm = kNan;
+  double period_ms = kNan;              // common, in host time
+  double resolution_ppm = kNan;         // of periods; at least that of stamps, 0.02 ppm
   std::optional<std::size_t> standard;  // the first camera that has the common period
 };
 

@@ -32,6 +32,14 @@ bool agree(const Candidate& a, const Candidate& b) {
   return std::abs(a.period_ms / b.period_ms - 1) * 1e6 <= tolerance_ppm(a, b);
 }
 
+double resolution_of(double sd_ppm) {
+  return std::max(kDeviations * std::sqrt(2.0) * sd_ppm, kLeastDifferencePpm);
+}
+
+std::string ppm_text(double ppm) {
+  return ppm < 10 ? fmt::format("{:.2g}", ppm) : fmt::format("{:.0f}", ppm);
+}
+
 class Group {
  public:
   Group(std::span<const GroupMember> members, std::optional<double> expected_period_ms)
@@ -85,11 +93,16 @@ class Group {
     }
   }
 
-  // The largest set of candidates that agree; of equal ones the narrowest, then the shortest
-  // period.
   void find_standard() {
-    std::vector<Candidate> sorted;
-    std::copy_if(candidates_.begin(), candidates_.end(), std::back_inserter(sorted), is_precise);
+    std::vector<Candidate> precise;
+    std::copy_if(candidates_.begin(), candidates_.end(), std::back_inserter(precise), is_precise);
+    if (!precise.empty()) return set_standard(largest_agreeing(std::move(precise)));
+    std::vector<Candidate> best = largest_agreeing(candidates_);
+    if (best.size() < candidates_.size()) set_standard(best);
+  }
+
+  // If several are the largest, the narrowest of them, then that of the shortest period.
+  static std::vector<Candidate> largest_agreeing(std::vector<Candidate> sorted) {
     std::sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
       return std::pair(a.period_ms, a.member) < std::pair(b.period_ms, b.member);
     });
@@ -105,7 +118,10 @@ class Group {
       best.assign(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
                   sorted.begin() + static_cast<std::ptrdiff_t>(end));
     }
-    if (best.empty()) return;
+    return best;
+  }
+
+  void set_standard(const std::vector<Candidate>& best) {
     double sum = 0;
     double weights = 0;
     for (const Candidate& candidate : best) {
@@ -134,9 +150,12 @@ class Group {
 
   Follows follows(const Candidate& candidate) const {
     const bool has_standard = in_standard_.size() > 1;
-    if (has_standard && in_standard(candidate)) return Follows::kTrigger;
+    if (has_standard && in_standard(candidate)) {
+      return is_precise(candidate) ? Follows::kTrigger : Follows::kUnknown;
+    }
     const Candidate standard = {0, standard_period_ms_, standard_sd_ppm_};
-    if (!is_precise(candidate) && agree(candidate, standard)) return Follows::kUnknown;
+    const bool uncertain = !is_precise(candidate) && !in_standard(candidate);
+    if (uncertain && agree(candidate, standard)) return Follows::kUnknown;
     // Compares with others on the same clock: if they differ, the camera differs; if all on that
     // clock agree, the cause may be the clock.
     bool others = false;
@@ -197,7 +216,7 @@ class Group {
       verdict.period_ms = standard_period_ms_;
       verdict.standard = in_standard_.front();
     }
-    if (worst_sd_ppm_ > 0) verdict.resolution_ppm = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
+    if (!candidates_.empty()) verdict.resolution_ppm = resolution_of(worst_sd_ppm_);
     const auto result = [&verdict](SyncStatus status, std::string reason) {
       verdict.status = status;
       verdict.reason = std::move(reason);
@@ -225,21 +244,20 @@ class Group {
     }
     if (count(Follows::kUnknown) > 0) return result(SyncStatus::kCannotBeTold, too_little());
     return result(SyncStatus::kWorks,
-                  fmt::format("all {} cameras have one frame period, to {:.2g} ppm",
-                              members_.size(), verdict.resolution_ppm));
+                  fmt::format("all {} cameras have one frame period, to {} ppm", members_.size(),
+                              ppm_text(verdict.resolution_ppm)));
   }
 
   std::string too_little() const {
     std::string text =
         fmt::format("too few or too unsteady frames of: {}", names(Follows::kUnknown));
-    const bool imprecise = kDeviations * std::sqrt(2.0) * worst_sd_ppm_ > kResolutionPpm;
-    if (imprecise && longest_s_ > 0) {
-      const double resolution = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
+    const double resolution = resolution_of(worst_sd_ppm_);
+    if (resolution > kResolutionPpm && longest_s_ > 0) {
       const double needed_s = longest_s_ * std::pow(resolution / kResolutionPpm, 2.0 / 3);
       text += fmt::format(
-          "; periods are known to {:.2g} ppm, but {:.0f} ppm are needed because free-running "
+          "; periods are known to {} ppm, but {:.0f} ppm are needed because free-running "
           "cameras differ by tens: record about {:.0f} s",
-          resolution, kResolutionPpm, std::ceil(needed_s));
+          ppm_text(resolution), kResolutionPpm, std::ceil(needed_s));
     }
     if (count(Follows::kTrigger) > 0) {
       text += fmt::format("; the other {} have one frame period", count(Follows::kTrigger));

@@ -314,6 +314,7 @@ StreamFacts stream_facts(const RecordedStream& stream) {
   if (recorded.empty()) return facts;
   facts.wraps = count_wraps(recorded);
   facts.global_time = counts_from_1970(recorded);
+  facts.one_clock = has_one_clock(recorded);
   note_arrivals(recorded, facts);
   const std::vector<StampedFrame> all = unwrapped(recorded);
   facts.account = frame_account(all, stream.counted);

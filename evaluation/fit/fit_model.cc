@@ -15,6 +15,7 @@
 #include "evaluation/statistics/statistics.h"
 #include "recording/collected.h"
 #include "recording/counted.h"
+#include "recording/text_fields.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -175,7 +176,8 @@ class Tables {
   }
 
   std::string write(const Json& document) const {
-    std::string text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    std::string text =
+        printable_json(document.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
     for (std::size_t i = 0; i < tables_.size(); ++i) {
       const std::string mark = fmt::format("\"@table {}@\"", i);
       const std::size_t at = text.find(mark);

@@ -149,6 +149,12 @@ bool counts_from_1970(std::span<const StampedFrame> frames) {
                      [kYear2000](const StampedFrame& frame) { return frame.sensor >= kYear2000; });
 }
 
+bool has_one_clock(std::span<const StampedFrame> frames) {
+  return frames.size() > 1 && std::ranges::all_of(frames, [](const StampedFrame& frame) {
+           return frame.sensor == frame.arrival;
+         });
+}
+
 bool is_doubtful_drift(double ppm) {
   constexpr double kLargestPpm = 10'000;
   return std::abs(ppm) > kLargestPpm;
@@ -232,7 +238,10 @@ std::vector<std::string> doubts_of(const RecordedStream& stream) {
                     "frames arrived twice; lost frames may be more",
                     times(account.counter_restarts)));
   }
-  if (counts_from_1970(frames)) {
+  if (has_one_clock(stream.frames)) {
+    add("arrivals and sensor stamps are the same, as from one column of a file: there is one clock "
+        "only, and drift, residual and excess say nothing");
+  } else if (counts_from_1970(frames)) {
     add("sensor stamps count from 1970, as a computer's clock does and no camera's: with "
         "librealsense's global time they are the host's own estimate, and drift, jitter and "
         "residual are those of the estimate. Record with global time off");

@@ -72,6 +72,10 @@ std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
 // Whether the stamps count from 1970, as those of global time do and no camera's.
 bool counts_from_1970(std::span<const StampedFrame> frames);
 
+// Whether every frame arrived at its sensor stamp, as where a file has one column for both: there
+// is one clock only, and no delay. False with fewer than two frames.
+bool has_one_clock(std::span<const StampedFrame> frames);
+
 // Beyond 1 %: stamps of another unit or of several cameras, or too few of them. False for NaN.
 bool is_doubtful_drift(double ppm);
 

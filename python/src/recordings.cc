@@ -48,7 +48,7 @@ std::shared_ptr<InspectedFiles> inspect_files(const std::vector<std::string>& fi
                                               const py::object& on_progress) {
   auto inspected = std::make_shared<InspectedFiles>();
   inspected->recorded = streams_of(files, on_progress);
-  for (const std::string& file : files) inspected->inspections.push_back(app::inspected(file, {}));
+  inspected->inspections = app::inspected(files, {});
   return inspected;
 }
 

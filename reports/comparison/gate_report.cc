@@ -219,14 +219,14 @@ namespace {
 // `failure`: empty for a case that passed.
 std::string test_case(const GateReport& report, const std::string& pipeline,
                       const std::string& name, const std::string& failure) {
-  const std::string start =
-      fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"",
-                  xml_text(fmt::format("{}.{}", report.scenario, pipeline)), xml_text(name));
+  const std::string start = fmt::format(
+      "    <testcase classname=\"{}\" name=\"{}\" time=\"0\"",
+      html_escaped(fmt::format("{}.{}", report.scenario, pipeline)), html_escaped(name));
   if (failure.empty()) return fmt::format("{}/>\n", start);
   return fmt::format(
       "{}>\n      <failure message=\"{}\">{}\n\nTo reproduce:\n{}\n</failure>\n    </testcase>\n",
-      start, xml_text(failure), xml_text(failure),
-      xml_text(fmt::format("{}", fmt::join(report.reproduce, "\n"))));
+      start, html_escaped(failure), html_escaped(failure),
+      html_escaped(fmt::format("{}", fmt::join(report.reproduce, "\n"))));
 }
 
 }  // namespace
@@ -250,7 +250,7 @@ std::string gate_junit(const GateReport& report) {
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite "
       "name=\"{}\" {}>\n{}  </testsuite>\n</testsuites>\n",
-      counts, xml_text(fmt::format("simbench gate {}", report.scenario)), counts, cases);
+      counts, html_escaped(fmt::format("simbench gate {}", report.scenario)), counts, cases);
 }
 
 }  // namespace simbench::reports

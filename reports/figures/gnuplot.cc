@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "recording/temporary_folder.h"
+#include "recording/text_fields.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
@@ -47,8 +48,11 @@ std::string in_quotes(std::string_view text) {
   return out + '\'';
 }
 
+// Text of the picture.
+std::string picture_text(std::string_view text) { return in_quotes(printable_lines(text)); }
+
 std::string label(const std::string& text, double x, double y, const std::string& look) {
-  return fmt::format("set label {} at {},{} {}\n", in_quotes(text), x, y, look);
+  return fmt::format("set label {} at {},{} {}\n", picture_text(text), x, y, look);
 }
 
 // White text on black, the fainter the smaller its share.
@@ -114,7 +118,7 @@ std::string head_script(const Figure& figure, int height) {
   const auto line = [&y, height](const std::string& text, const std::string& look) {
     const double place = 1 - static_cast<double>(y) / height;
     y += kSourceHeight;
-    return fmt::format("set label {} at screen 0.5, screen {:.4f} center {}\n", in_quotes(text),
+    return fmt::format("set label {} at screen 0.5, screen {:.4f} center {}\n", picture_text(text),
                        place, look);
   };
   std::string script = line(title, "font ',14'");
@@ -261,7 +265,7 @@ std::string spans(const FigurePanel& panel, const SpanColours& colours,
                    "noborder\n",
                    span.from, span.to, colour);
     plots.push_back(fmt::format("keyentry with boxes fs solid noborder lc rgb '{}' title {}",
-                                colour, in_quotes(span.label)));
+                                colour, picture_text(span.label)));
   }
   return text;
 }
@@ -278,7 +282,7 @@ std::string lines(const FigurePanel& panel, std::vector<std::string>& plots) {
         line.vertical ? fmt::format("from {0}, graph 0 to {0}, graph 1", line.at)
                       : fmt::format("from graph 0, first {0} to graph 1, first {0}", line.at);
     fmt::format_to(std::back_inserter(text), "set arrow {} nohead {}\n", ends, look);
-    plots.push_back(fmt::format("keyentry with lines {} title {}", look, in_quotes(line.label)));
+    plots.push_back(fmt::format("keyentry with lines {} title {}", look, picture_text(line.label)));
   }
   return text;
 }
@@ -350,7 +354,7 @@ std::string categories(const FigurePanel& panel) {
   std::string tics;
   for (std::size_t i = 0; i < panel.categories.size(); ++i) {
     fmt::format_to(std::back_inserter(tics), "{}{} {}", i == 0 ? "" : ", ",
-                   in_quotes(panel.categories[i]), i);
+                   picture_text(panel.categories[i]), i);
   }
   return fmt::format("set xtics ({}) rotate by -20\nset xrange [-0.6:{}]\nset xzeroaxis lt -1\n",
                      tics, static_cast<double>(panel.categories.size()) - 0.4);
@@ -366,7 +370,7 @@ std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
   fmt::format_to(
       std::back_inserter(script),
       "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {} offset 1,0\n",
-      in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
+      picture_text(panel.title), picture_text(panel.x_label), picture_text(panel.y_label));
   script += panel.log_x ? "set logscale x\n" : "unset logscale x\n";
   script += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
   script += x_range(panel) + y_range(panel) + categories(panel);
@@ -376,7 +380,7 @@ std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
     script += datablock(datablocks, series);
     const auto entry = legend.extract(series.colour);  // titles its first series alone
     const std::string title =
-        entry.empty() || !has_legend(panel) ? "notitle" : "title " + in_quotes(entry.mapped());
+        entry.empty() || !has_legend(panel) ? "notitle" : "title " + picture_text(entry.mapped());
     if (series.mark == Mark::kMarkedLine && !series.low.empty()) {
       plots.push_back(fmt::format(
           "$data{} using 1:3:4 with filledcurves fs transparent solid 0.15 noborder lc rgb '{}' "

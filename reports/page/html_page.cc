@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/page/web_files.h"
 #include "reports/text/escaped_text.h"
@@ -157,6 +158,15 @@ Json figure_json(const Figure& figure, HtmlColumns& columns) {
   return json;
 }
 
+// Names in a figure may come from a file that anyone wrote; the page draws them.
+void make_printable(Json& json) {
+  if (json.is_string()) {
+    json = printable_lines(json.get_ref<const std::string&>());
+  } else if (json.is_structured()) {
+    for (Json& member : json) make_printable(member);
+  }
+}
+
 }  // namespace
 
 std::string base64(const std::string& bytes) {
@@ -188,6 +198,7 @@ std::string figures_json(const std::vector<Figure>& figures) {
   HtmlColumns columns;
   Json json = {{"figures", Json::array()}};
   for (const Figure& figure : figures) json["figures"].push_back(figure_json(figure, columns));
+  make_printable(json);
   json["columns"] = columns.json();
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -29,8 +29,25 @@ std::string verdict_sentence(const GroupVerdict& verdict) {
                      verdict.status == SyncStatus::kWorks ? ": " : ", because ", verdict.reason);
 }
 
-std::string other_streams(const Diagnosis& diagnosis) {
+// The streams of one camera that do not keep step.
+void add_free_streams(const Diagnosis& diagnosis, std::vector<std::string>& sentences) {
+  constexpr std::size_t kMostShown = 3;
+  std::size_t found = 0;
+  for (const evaluation::PairDiagnosis& pair : diagnosis.pairs) {
+    if (!pair.runs_free || ++found > kMostShown) continue;
+    sentences.push_back(fmt::format("{}: {} runs free of {}, {} ms a minute.",
+                                    capitalised(evaluation::called_camera(pair.camera)),
+                                    pair.stream, pair.against,
+                                    number_text(pair.moves_ms_per_minute)));
+  }
+  if (found > kMostShown) {
+    sentences.push_back(fmt::format("So do {} more pairs of streams.", found - kMostShown));
+  }
+}
+
+std::string streams_sentences(const Diagnosis& diagnosis) {
   std::vector<std::string> sentences;
+  add_free_streams(diagnosis, sentences);
   for (std::size_t i = 1; i < diagnosis.groups.size(); ++i) {
     sentences.push_back(verdict_sentence(diagnosis.groups[i]));
   }
@@ -98,13 +115,18 @@ std::string slips_sentence(const Diagnosis& diagnosis) {
       names.empty() ? std::string("No camera's stamps slip by whole frames")
                     : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "));
   const Counted lost(diagnosis, &evaluation::FrameAccount::lost);
+  const Counted unexposed(diagnosis, &evaluation::FrameAccount::never_exposed);
   const Counted unknown(diagnosis, &evaluation::FrameAccount::unknown);
   if (lost.all > 0) text += fmt::format("; {} lost, most by {}", lost.text("frame"), lost.most_of);
+  if (unexposed.all > 0) {
+    text += fmt::format("; {} without a frame, most of {}: never exposed", unexposed.text("period"),
+                        unexposed.most_of);
+  }
   if (unknown.all > 0) {
     text += fmt::format("; {} without a frame, most of {}: lost or never exposed",
                         unknown.text("period"), unknown.most_of);
   }
-  return text + (lost.all + unknown.all == 0 ? "; no frame is lost." : ".");
+  return text + (lost.all + unexposed.all + unknown.all == 0 ? "; no frame is lost." : ".");
 }
 
 std::string resolution_sentence(const GroupVerdict& verdict) {
@@ -132,7 +154,7 @@ std::string unknown_sentence(const std::vector<std::string>& unknowns) {
 AnswerText diagnose_answer(const Diagnosis& diagnosis) {
   if (diagnosis.groups.empty()) return {.lead = "There is no camera."};
   AnswerText answer{.lead = verdict_sentence(diagnosis.verdict)};
-  answer.add("Streams", other_streams(diagnosis));
+  answer.add("Streams", streams_sentences(diagnosis));
   answer.add("Drift", drift_sentence(diagnosis));
   answer.add("Slips", slips_sentence(diagnosis));
   answer.add("Can tell", resolution_sentence(diagnosis.verdict));

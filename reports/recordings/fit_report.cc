@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
@@ -30,7 +31,7 @@ std::string drop_text(const FitSide& side) {
 
 std::string lines_text(const std::string& heading, const std::vector<std::string>& lines) {
   std::string text = "\n" + heading + "\n";
-  for (const std::string& line : lines) text += wrapped("- " + line, 2);
+  for (const std::string& line : lines) text += wrapped("- " + printable_name(line), 2);
   return text;
 }
 
@@ -108,9 +109,11 @@ Json fit_check_json(const char* name, const FitCheck& check,
 }  // namespace
 
 std::string fit_table(const FitReport& report) {
-  std::string text = fmt::format("{} fitted over {}: {}\n", fmt::join(report.inputs, ", "),
-                                 report.base, report.model);
-  if (!report.capture.empty()) text += fmt::format("capture: {}\n", report.capture);
+  std::string text =
+      printable_name(fmt::format("{} fitted over {}: {}", fmt::join(report.inputs, ", "),
+                                 report.base, report.model)) +
+      "\n";
+  if (!report.capture.empty()) text += fmt::format("capture: {}\n", printable_name(report.capture));
   text += lines_text("Fitted", report.study.model.evidence);
   text += lines_text("Not identified", report.study.model.not_identified);
   text += fit_check_text("Recording and simulated model", report.study.whole, report.cameras);

@@ -13,6 +13,7 @@
 #include "recording/counted.h"
 #include "recording/text_fields.h"
 #include "recording/version.h"
+#include "reports/archive/archive.h"
 #include "reports/recordings/stream_blocks.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -104,25 +105,44 @@ std::vector<std::string> inspection_notes(const Inspection& file) {
   return notes;
 }
 
-// What to do with it.
-std::string proposal(const Inspection& file) {
-  const auto name = [](const bags::TopicScan& scan) { return printable_name(scan.topic.name); };
-  if (!file.recording.streams.empty()) {
-    return fmt::format("Next: simbench diagnose {}", file.file);
-  }
+// How a bag without streams of a camera can be read.
+std::string topics_proposal(const Inspection& file) {
   std::string topics;
   for (const bags::TopicScan& scan : file.bag->topics) {
-    if (scan.messages > 1) topics += (topics.empty() ? "" : ",") + name(scan);
+    if (scan.messages > 1) topics += (topics.empty() ? "" : ",") + scan.topic.name;
   }
   return fmt::format(
       "No topic looks like a camera's. If the messages of some begin with a header, their stamps "
-      "can be read: simbench diagnose {} --topics {}",
-      file.file, topics.empty() ? "TOPIC,..." : topics);
+      "can be read: {}",
+      simbench_line(
+          {"simbench", "diagnose", file.file, "--topics", topics.empty() ? "TOPIC,..." : topics}));
+}
+
+// What to do with the files, and with each folder. A heading is not broken into lines.
+std::vector<Block> next_blocks(const std::vector<Inspection>& files,
+                               const std::vector<std::string>& reading) {
+  std::vector<Block> blocks;
+  const auto propose = [&](const std::vector<std::string>& inputs) {
+    std::vector<std::string> words = {"simbench", "diagnose"};
+    words.insert(words.end(), inputs.begin(), inputs.end());
+    words.insert(words.end(), reading.begin(), reading.end());
+    blocks.push_back({.heading = "Next: " + simbench_line(std::move(words))});
+  };
+  std::vector<std::string> rig;
+  for (const Inspection& file : files) {
+    if (!file.is_folder && !file.recording.streams.empty()) rig.push_back(file.file);
+  }
+  if (!rig.empty()) propose(rig);
+  for (const Inspection& file : files) {
+    if (file.is_folder) propose({file.file});
+  }
+  return blocks;
 }
 
 }  // namespace
 
-Document inspect_document(const std::vector<Inspection>& files) {
+Document inspect_document(const std::vector<Inspection>& files,
+                          const std::vector<std::string>& reading) {
   Document document;
   for (const Inspection& file : files) {
     Block block{.prose = head_of(file)};
@@ -142,9 +162,11 @@ Document inspect_document(const std::vector<Inspection>& files) {
       }
       document.blocks.push_back(std::move(topics));
     }
-    Block last{.prose = {proposal(file)}, .items = inspection_notes(file)};
+    Block last{.items = inspection_notes(file)};
+    if (streams.empty() && file.bag) last.prose = {topics_proposal(file)};
     document.blocks.push_back(std::move(last));
   }
+  std::ranges::move(next_blocks(files, reading), std::back_inserter(document.blocks));
   return document;
 }
 

@@ -38,9 +38,13 @@ struct Inspection {
   std::optional<bags::BagScan> bag{};  // its streams are in `recording`
   RecordedStreams recording{};
   std::vector<evaluation::StampedStream> stamps{};  // of its streams
+  bool is_folder = false;                           // of recordings: a rig by itself
 };
 
-Document inspect_document(const std::vector<Inspection>& files);
+// Ends with the next command, which takes the files as they were read: `reading` are the words of
+// the options for that.
+Document inspect_document(const std::vector<Inspection>& files,
+                          const std::vector<std::string>& reading = {});
 std::string inspect_json(const std::vector<Inspection>& files);
 
 }  // namespace simbench::reports

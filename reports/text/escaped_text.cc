@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "algorithms/ports/assert.h"
-#include "scenarios/document.h"
+#include "recording/text_fields.h"
 
 namespace simbench::reports {
 namespace {
@@ -42,7 +42,7 @@ const std::pair<std::string_view, std::string_view>* special_at(std::string_view
 std::string html_escaped(std::string_view text) {
   std::string out;
   out.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : printable_lines(text)) {
     switch (c) {
       case '&':
         out += "&amp;";
@@ -66,26 +66,6 @@ std::string html_escaped(std::string_view text) {
   return out;
 }
 
-std::string xml_text(std::string_view text) {
-  const std::string whole(text);
-  std::string escaped;
-  for (const char letter : scenarios::is_utf8(whole) ? whole : std::string(text.size(), '?')) {
-    const bool is_control = static_cast<unsigned char>(letter) < ' ' && letter != '\n';
-    if (letter == '&') {
-      escaped += "&amp;";
-    } else if (letter == '<') {
-      escaped += "&lt;";
-    } else if (letter == '>') {
-      escaped += "&gt;";
-    } else if (letter == '"') {
-      escaped += "&quot;";
-    } else {
-      escaped += is_control ? '?' : letter;
-    }
-  }
-  return escaped;
-}
-
 std::string latex_escaped(std::string_view text) {
   std::string escaped;
   while (!text.empty()) {
@@ -100,8 +80,9 @@ std::string latex_escaped(std::string_view text) {
   return escaped;
 }
 
-std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+std::string csv_cell(std::string_view unchecked) {
+  std::string text = printable_name(unchecked);
+  if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + '"';
@@ -112,7 +93,7 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 std::string script_safe(std::string_view json) {
   std::string out;
   out.reserve(json.size());
-  for (const char c : json) {
+  for (const char c : printable_json(json)) {
     if (c == '<') {
       out += "\\u003c";
     } else {

@@ -1,4 +1,6 @@
-// Unchecked text (names, paths, messages) as each format writes it.
+// Unchecked text (names, paths, messages) as each format writes it. What a reader would obey
+// instead of show stands as \xHH (printable_name() of recording/text_fields.h) in all but LaTeX,
+// whose documents are escaped as a whole (reports/text/block.h).
 //
 //   html_escaped("a < b & \"c\"")   "a &lt; b &amp; &quot;c&quot;", for content and attributes
 //   latex_escaped("50 %_a")         "50 \%\_a"
@@ -12,10 +14,8 @@
 
 namespace simbench::reports {
 
+// Also for XML 1.0.
 std::string html_escaped(std::string_view text);
-
-// For XML 1.0: characters that it cannot hold become question marks.
-std::string xml_text(std::string_view text);
 
 // Text with the special characters of LaTeX escaped. Every other character stays, in UTF-8, which
 // LaTeX reads since 2018.
@@ -25,8 +25,8 @@ std::string latex_escaped(std::string_view text);
 std::string csv_cell(std::string_view text);
 std::string csv_cell(double value);
 
-// JSON in which no HTML parser finds the end of a script: '<' stands in strings only, where an
-// escape means the same.
+// JSON in which no HTML parser finds the end of a script, and no reader of the page's source obeys
+// anything: '<' and such characters stand in strings only, where an escape means the same.
 std::string script_safe(std::string_view json);
 
 // Replaces each {{name}} of a template by its value, which is not searched again. A name without a

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "evaluation/statistics/statistics.h"
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/text/output_file.h"
 #include "scenarios/document.h"
@@ -149,7 +150,7 @@ Json series_json(const evaluation::Series& series) {
 }
 
 std::string file_text(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return printable_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace simbench::reports

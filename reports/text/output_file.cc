@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "algorithms/ports/assert.h"
+#include "recording/file_kind.h"
 #include "recording/number_in.h"
 #include "scenarios/document.h"
 #include "scenarios/input_file.h"
@@ -83,6 +84,19 @@ void clear_unfinished(const fs::path& path) {
   }
 }
 
+constexpr std::array<const char*, 4> kOwnFiles = {kManifest, "results.json", "frames.csv",
+                                                  "hosts.csv"};
+
+// Whether the file is of an archive of results or of a recording folder.
+bool is_part_of_results(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const fs::path folder = path.parent_path();
+  std::error_code none;
+  if (name == "events.csv") return lasting_kind(folder / "frames.csv").has_value();
+  return std::ranges::find(kOwnFiles, name) != kOwnFiles.end() &&
+         fs::exists(folder / kManifest, none) && fs::exists(path, none);
+}
+
 // The full path, for a link that of its target.
 fs::path full_path(const std::string& named) {
   refuse_dangling_link(named, named);
@@ -94,15 +108,13 @@ fs::path full_path(const std::string& named) {
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     fail(named, "is not a file that can be replaced; name another one");
   }
+  if (const auto why = irreplaceable(path)) fail(named, *why + "; name another file");
   if (!fs::is_directory(path.parent_path(), error)) {
     const fs::path folder = fs::path(named).parent_path();
     fail(named, fmt::format("there is no folder {}; make it first", folder.string()));
   }
   return path;
 }
-
-constexpr std::array<const char*, 4> kOwnFiles = {kManifest, "results.json", "frames.csv",
-                                                  "hosts.csv"};
 
 // The folder's full path, without a slash at its end, for the name of a sibling.
 fs::path normal_path(const fs::path& folder) {
@@ -147,6 +159,12 @@ void check_replaceable(const fs::path& folder, const std::vector<std::string>& m
 }
 
 }  // namespace
+
+std::optional<std::string> irreplaceable(const fs::path& path) {
+  if (const auto kind = lasting_kind(path)) return fmt::format("is {}", *kind);
+  if (is_part_of_results(path)) return fmt::format("is a part of {}", path.parent_path().string());
+  return std::nullopt;
+}
 
 void fail_output(const fs::path& folder, const std::string& problem) {
   throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));

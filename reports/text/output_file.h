@@ -46,6 +46,11 @@ class HeldInterrupt {
   HeldInterrupt& operator=(const HeldInterrupt&) = delete;
 };
 
+// Why an existing file is not replaced, whoever asks for it: "is a rosbag 2.0 bag". It is a
+// recording or other data that no run makes again (recording/file_kind.h), or a part of a folder of
+// results. Nothing for what may be replaced, and where there is no file.
+std::optional<std::string> irreplaceable(const std::filesystem::path& path);
+
 class OutputFile {
  public:
   // Checks that `path` may be written and makes the temporary file.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "recording/text_fields.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -20,6 +21,11 @@ bool the_page_colour = false;
 
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kNarrowest = 12;
+// ECMA-48's escapes.
+constexpr const char* kGreenText = "\x1b[32m";
+constexpr const char* kRedText = "\x1b[31m";
+constexpr const char* kCyanText = "\x1b[36m";
+constexpr const char* kUncoloured = "\x1b[0m";
 
 // A column of the table and its width in a part.
 struct Slot {
@@ -50,10 +56,9 @@ const char* verdict_colour(std::string_view verdict) {
     const char* escape = "";
     std::initializer_list<std::string_view> words;
   };
-  static const Words words[] = {
-      {"\x1b[32m", {"better", "best", "inside", "yes", "passed"}},
-      {"\x1b[31m", {"worse", "possibly worse", "outside", "no", "FAILED"}},
-      {"\x1b[36m", {"limit", "reference"}}};
+  static const Words words[] = {{kGreenText, {"better", "best", "inside", "yes", "passed"}},
+                                {kRedText, {"worse", "possibly worse", "outside", "no", "FAILED"}},
+                                {kCyanText, {"limit", "reference"}}};
   const std::string_view said = verdict.substr(0, verdict.find_first_of(",:("));
   for (const Words& each : words) {
     if (std::ranges::find(each.words, said) != each.words.end()) return each.escape;
@@ -61,12 +66,20 @@ const char* verdict_colour(std::string_view verdict) {
   return "";
 }
 
+// The colour's escape with which the text begins; empty if it begins with none of the page's.
+std::string_view colour_at(std::string_view text) {
+  for (const std::string_view own : {kGreenText, kRedText, kCyanText, kUncoloured}) {
+    if (text.starts_with(own)) return own;
+  }
+  return {};
+}
+
 // The cell, coloured where it is a verdict and colour is wanted, between its blanks.
 std::string coloured(std::string padded, const std::string& text, const Column& column) {
   const char* const escape = the_page_colour && column.is_verdict ? verdict_colour(text) : "";
   if (*escape == '\0') return padded;
   const std::size_t at = padded.find(text);
-  padded.insert(at + text.size(), "\x1b[0m");
+  padded.insert(at + text.size(), kUncoloured);
   return padded.insert(at, escape);
 }
 
@@ -232,6 +245,19 @@ std::optional<std::size_t> page_width() { return the_page_width; }
 void set_page_colour(bool wanted) { the_page_colour = wanted; }
 
 bool page_colour() { return the_page_colour; }
+
+std::string printable_page(std::string_view text) {
+  std::string out;
+  while (true) {
+    const std::size_t escape = the_page_colour ? text.find('\x1b') : std::string_view::npos;
+    out += printable_lines(text.substr(0, escape));
+    if (escape == std::string_view::npos) return out;
+    text.remove_prefix(escape);
+    const std::string_view own = colour_at(text);
+    out += own.empty() ? printable_name(text.substr(0, 1)) : std::string(own);
+    text.remove_prefix(std::max<std::size_t>(own.size(), 1));
+  }
+}
 
 std::vector<std::string> words_in_lines(std::string_view text, std::size_t width) {
   Lines lines;

@@ -66,6 +66,10 @@ std::string aligned(const Table& table);
 // blanks. Unchanged without a limit.
 std::string fitted(std::string_view text);
 
+// The text of a whole page as a terminal may get it: what it would obey stands as \xHH (line ends
+// stay), but for the page's own colours, if it has any.
+std::string printable_page(std::string_view text);
+
 // The words of `text` in lines of at most `width`, one blank between words; a longer word has a
 // line of its own.
 std::vector<std::string> words_in_lines(std::string_view text, std::size_t width);

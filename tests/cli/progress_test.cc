@@ -15,8 +15,8 @@ using testing::Not;
 
 // A clock that the test moves, and what the progress wrote.
 struct Bench {
-  explicit Bench(ProgressStyle style)
-      : progress(out, style, "run", [this] { return std::chrono::duration<double>(now); }) {}
+  explicit Bench(ProgressStyle style, const std::string& unit = "run")
+      : progress(out, style, unit, [this] { return std::chrono::duration<double>(now); }) {}
 
   std::string new_text() {
     std::string text = out.str();
@@ -42,6 +42,23 @@ TEST(Progress, ALogGetsALineAtEveryQuarter) {
             "4 of 8 runs (50 %), 4 s left\n"
             "6 of 8 runs (75 %), 2 s left\n"
             "8 runs in 8 s\n");
+}
+
+TEST(Progress, BytesHaveTheUnitOfTheWhole) {
+  const auto text = [](std::uint64_t done, std::uint64_t total) {
+    Bench bench({.terminal = false}, "byte");
+    bench.progress.update(done, total);
+    return bench.new_text();
+  };
+  EXPECT_EQ(text(0, 999), "0 of 999 bytes (0 %)\n");
+  EXPECT_EQ(text(0, 1), "0 of 1 byte (0 %)\n");
+  EXPECT_THAT(text(1'000, 141'000), HasSubstr("1.00 of 141.00 kB (0 %)"));
+  EXPECT_THAT(text(1'650'340, 3'708'268), HasSubstr("1.65 of 3.71 MB (44 %)"));
+  EXPECT_THAT(text(30'000'000'000, 40'000'000'000), HasSubstr("30.00 of 40.00 GB (75 %)"));
+  EXPECT_THAT(text(3'708'268, 3'708'268), HasSubstr("3.71 MB in "));
+  Bench bar({.terminal = true, .colour = false, .width = 60}, "byte");
+  bar.progress.update(1'650'340, 3'708'268);
+  EXPECT_THAT(bar.new_text(), HasSubstr(" 44 % of 3.71 MB"));
 }
 
 TEST(Progress, ATerminalGetsOneLineThatIsErased) {

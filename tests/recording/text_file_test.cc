@@ -125,13 +125,13 @@ TEST_F(TextFileTest, DamageIsAnError) {
 }
 
 TEST_F(TextFileTest, OtherFilesAreNamed) {
-  EXPECT_EQ(problem("\x1a\x45\xdf\xa3 matroska"), "it is a Matroska video (MKV, WebM), no text");
+  EXPECT_EQ(problem("\x1a\x45\xdf\xa3 matroska"), "it is a Matroska file, no text");
   EXPECT_EQ(problem("\x89HDF\r\n\x1a\n"), "it is an HDF5 file, no text");
   EXPECT_EQ(problem(std::string("\0\0\0\x20"
                                 "ftypisom",
                                 12)),
-            "it is an MP4 or MOV video, no text");
-  EXPECT_EQ(problem("#ROSBAG V2.0\n"), "it is a bag of ROS 1, no text");
+            "it is an MP4 file, no text");
+  EXPECT_EQ(problem("#ROSBAG V2.0\n"), "it is a rosbag 2.0 bag, no text");
 }
 
 TEST_F(TextFileTest, LinesMayBeReadAgain) {

@@ -62,6 +62,16 @@ TEST(InputFile, APipeIsReadToItsEndAndNoFurtherThanItsLimit) {
   }
 }
 
+TEST(InputFile, APipeIsRefusedWhereOnlyAFileIsOfUse) {
+  const ScratchFolder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(file_refusal([&] { InputFile file(path, Pipes::kRefused); }),
+            "it is a pipe; allowed: a file");
+  EXPECT_EQ(file_refusal([&] { file_content(path, 1000, Pipes::kRefused); }),
+            "it is a pipe; allowed: a file");
+}
+
 TEST(InputFile, AReadErrorAtAnyByteIsAnError) {
   const ScratchFolder folder;
   const std::string path = folder.write("scenario.json", R"({"base": "18cam_6host_45fps"})");

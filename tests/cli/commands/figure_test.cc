@@ -27,6 +27,19 @@ class FigureTest : public ProgramTest {
   }
 };
 
+TEST_F(FigureTest, TakesTheOptionsAndFilesOfOtherCommandsForRecordings) {
+  std::string stamps = "#timestamp [ns]\n";
+  for (int i = 0; i < 400; ++i) stamps += std::to_string(i * 50'000'000L) + "\n";
+  file("cam0.csv", stamps);
+  file("cam1.csv", stamps);
+  const ProgramResult result = figure("phases", "p.csv",
+                                      {"cam0.csv", "cam1.csv", "--columns",
+                                       "sensor=#timestamp [ns]:ns,arrival=#timestamp [ns]:ns"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(content("p.csv"), HasSubstr("frame: how the phase moves,cam0,"));
+  EXPECT_THAT(content("p.csv"), HasSubstr("frame: how the phase moves,cam1,"));
+}
+
 TEST_F(FigureTest, ListsThem) {
   const ProgramResult result = run({"figure", "--list"});
   EXPECT_EQ(result.status, 0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -58,6 +59,75 @@ TEST_F(InspectCommand, UnknownTopicsAreProposed) {
   const ProgramResult refused = run({"diagnose", "x.bag"});
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("/my/stamps (my_msgs/Stamps)"));
+}
+
+// The proposed command, as a shell takes it.
+class NextCommand : public InspectCommand {
+ protected:
+  ProgramResult proposed(const ProgramResult& inspected) const {
+    const std::size_t at = inspected.out.find("Next: simbench ");
+    if (at == std::string::npos) return {};
+    const std::string line = inspected.out.substr(at + 6, inspected.out.find('\n', at) - at - 6);
+    file("next.sh",
+         "simbench() { '" SIMBENCH_PROGRAM "' \"$@\"; }\n" + line + " > next.txt 2>&1\n");
+    const std::string shell = "cd '" + folder().string() + "' && sh next.sh";
+    return {.status = std::system(shell.c_str()), .out = content("next.txt"), .err = line};
+  }
+};
+
+TEST_F(NextCommand, RepeatsFilesAndOptionsAndWorks) {
+  std::string stamps = "#timestamp [ns]\n";
+  for (int i = 0; i < 400; ++i)
+    stamps += std::to_string(1'403'636'579'763'555'584 + i * 50'000'000L) + "\n";
+  std::filesystem::create_directories(folder() / "cam0");
+  std::filesystem::create_directories(folder() / "cam 1");
+  file("cam0/data.csv", stamps);
+  file("cam 1/data.csv", stamps);
+  const ProgramResult found = run({"inspect", "cam0/data.csv", "cam 1/data.csv", "--columns",
+                                   "sensor=#timestamp [ns]:ns,arrival=#timestamp [ns]:ns"});
+  EXPECT_EQ(found.status, 0);
+  EXPECT_THAT(found.out, HasSubstr("cam0/data  frame"));
+  EXPECT_THAT(found.out, HasSubstr("cam 1/data  frame"));
+  EXPECT_THAT(found.out, HasSubstr("there is one clock only"));
+  const ProgramResult next = proposed(found);
+  EXPECT_EQ(next.status, 0) << next.err;
+  EXPECT_THAT(next.err, HasSubstr("cam0/data.csv"));
+  EXPECT_THAT(next.out, HasSubstr("cam0/data"));
+  EXPECT_THAT(next.out, HasSubstr("cam 1/data"));
+  EXPECT_EQ(found.out.find("Next: ", found.out.find("Next: ") + 1), std::string::npos);
+}
+
+TEST_F(NextCommand, RepeatsTopicsAndLeavesOutWhatHasNone) {
+  for (const char* const name : {"a.bag", "b.bag"}) {
+    bags::RosbagWriter writer(bags::RosbagWriter::Chunks::kNone);
+    const auto topic = writer.add_topic("/my/stamps", "my_msgs/Stamps");
+    for (int i = 0; i < 50; ++i) {
+      const auto at = std::chrono::milliseconds(100'000 + 33 * i);
+      writer.add_message(topic, at, bags::ros1_header(static_cast<std::uint32_t>(i), at, "x"));
+    }
+    file(name, writer.bag());
+  }
+  const ProgramResult found = run({"inspect", "a.bag", "b.bag", "--topics", "/my/stamps"});
+  const ProgramResult next = proposed(found);
+  EXPECT_EQ(next.err, "simbench diagnose a.bag b.bag --topics /my/stamps");
+  EXPECT_EQ(next.status, 0) << next.out;
+  EXPECT_EQ(proposed(run({"inspect", bag(0), "a.bag"})).err, "simbench diagnose " + bag(0));
+}
+
+TEST_F(InspectCommand, ProgressIsInTheUnitOfTheWhole) {
+  std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
+  for (int i = 0; i < 60'000; ++i) {
+    const std::string ms = std::to_string(33 * i);
+    text += "Depth,0," + std::to_string(i) + "," + ms + ".000," + ms + ".500\n";
+  }
+  ASSERT_GT(text.size(), 1'000'000U);
+  file("large.csv", text);
+  for (const char* const command : {"inspect", "diagnose"}) {
+    const ProgramResult found = run({command, "large.csv"});
+    EXPECT_THAT(found.err,
+                testing::ContainsRegex("^[0-2]\\.[0-9][0-9] of [12]\\.[0-9][0-9] MB \\("));
+    EXPECT_THAT(found.err, testing::Not(HasSubstr("megabyte")));
+  }
 }
 
 TEST_F(ExportCommand, SetsNameFileTopicAndMessage) {

@@ -104,6 +104,47 @@ TEST(Diagnose, TwoCamerasThatDisagreeBothRunFree) {
   EXPECT_THAT(found.findings[0].text, HasSubstr("no other camera has its period"));
 }
 
+// 10 ms of jitter leave periods uncertain by some 40 ppm, but not by 930.
+TEST(Diagnose, UnsteadyCamerasThatClearlyDisagreeRunFree) {
+  const auto unsteady = [](const char* name, double ppm) {
+    return record({.name = name, .period_ms = kPeriodMs * (1 + ppm * 1e-6), .late_mean_ms = 10});
+  };
+  const Diagnosis found = diagnose({unsteady("a", 0), unsteady("b", 930)}, {});
+  EXPECT_GT(found.verdict.resolution_ppm, 5);
+  EXPECT_LT(found.verdict.resolution_ppm, 930);
+  EXPECT_EQ(found.verdict.status, SyncStatus::kDoesNotWork) << found.verdict.reason;
+  EXPECT_THAT(found.verdict.reason, HasSubstr("free-running"));
+  EXPECT_THAT(found.verdict.reason, HasSubstr("a, b"));
+  EXPECT_NEAR(found.cameras[1].standing.moves_ms_per_minute, 55.8, 5);
+  // Two that agree may still differ by tens of ppm; the one that does not runs free all the same.
+  const Diagnosis agreeing = diagnose({unsteady("a", 0), unsteady("b", 0)}, {});
+  EXPECT_EQ(agreeing.verdict.status, SyncStatus::kCannotBeTold) << agreeing.verdict.reason;
+  EXPECT_FALSE(agreeing.verdict.standard);
+  const Diagnosis three = diagnose({unsteady("a", 0), unsteady("b", 930), unsteady("c", 0)}, {});
+  EXPECT_EQ(three.verdict.status, SyncStatus::kDoesNotWork);
+  EXPECT_EQ(three.cameras[0].standing.follows, Follows::kUnknown);
+  EXPECT_EQ(three.cameras[1].standing.follows, Follows::kOwnClock);
+  EXPECT_EQ(three.cameras[2].standing.follows, Follows::kUnknown);
+}
+
+TEST(Diagnose, OneColumnForBothStampsIsOneClock) {
+  std::vector<RecordedStream> streams;
+  for (const char* name : {"a", "b"}) {
+    streams.push_back(record({.name = name, .period_ms = 50, .delay_ms = 0, .late_mean_ms = 0}));
+    for (StampedFrame& frame : streams.back().frames) frame.sensor = frame.arrival;
+  }
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_EQ(found.verdict.status, SyncStatus::kWorks);
+  EXPECT_EQ(found.verdict.reason, "all 2 cameras have one frame period, to 0.02 ppm");
+  EXPECT_EQ(found.verdict.resolution_ppm, 0.02);
+  EXPECT_THAT(kinds(found), ElementsAre("a one_clock", "b one_clock"));
+  EXPECT_THAT(found.cannot_know,
+              Contains(HasSubstr("one column, so that there is one clock only")));
+  // A frame with a delay of its own is enough for two clocks.
+  streams[0].frames[7].arrival += Nanoseconds(1);
+  EXPECT_THAT(kinds(diagnose(streams, {})), ElementsAre("b one_clock"));
+}
+
 TEST(Diagnose, HalfTheRateIsStillTheTrigger) {
   std::vector<RecordedStream> streams = rig();
   streams[2] = record({.name = "c", .period_ms = 2 * kPeriodMs, .clock_ppm = 20, .frames = 900});

@@ -53,6 +53,30 @@ TEST(DiagnoseAnswer, NamesTheCameraThatDrifts) {
   EXPECT_THAT(text, testing::ContainsRegex("3.60 ms a minute .* whole frame within 9.26 minutes"));
 }
 
+// Ten minutes in which the second stream of the camera is 1000 ppm slow, by their one clock. Two
+// periods of the first have no frame, which its counter did not count.
+TEST(DiagnoseAnswer, NamesStreamsThatRunFreeAndPeriodsWithoutAFrame) {
+  std::vector<RecordedStream> all = {{"cam", "pc", "depth", {}}, {"cam", "pc", "rgb", {}}};
+  std::uint64_t counter = 0;
+  for (int i = 0; i < 18'000; ++i) {
+    const double ms = i * 1000.0 / 30;
+    const double late_ms = 9 + i * 7919 % 97 * 0.005;
+    const double slow_ms = ms * (1 + 1000e-6);
+    all[1].frames.push_back({.counter = static_cast<std::uint64_t>(i),
+                             .sensor = from_ms(slow_ms),
+                             .arrival = from_ms(slow_ms + late_ms)});
+    if (i == 700 || i == 900) continue;
+    all[0].frames.push_back(
+        {.counter = counter++, .sensor = from_ms(ms), .arrival = from_ms(ms + late_ms)});
+  }
+  const std::string text = whole_text(diagnose_answer(evaluation::diagnose(all, {})));
+  // 1000 ppm of a minute.
+  EXPECT_THAT(text, HasSubstr("Camera cam: rgb runs free of depth, 60.0 ms a minute."));
+  EXPECT_THAT(text,
+              HasSubstr("; 2 periods are without a frame, most of camera cam: never exposed."));
+  EXPECT_THAT(text, Not(HasSubstr("no frame is lost")));
+}
+
 TEST(DiagnoseAnswer, WithoutCamerasThereIsNothingToSay) {
   EXPECT_EQ(paragraphs(diagnose_answer({})).front(), "There is no camera.");
 }

@@ -44,17 +44,24 @@ TEST(LatexText, SpecialCharactersAreWrittenOut) {
   EXPECT_EQ(latex_escaped(""), "");
 }
 
-TEST(XmlText, EscapesWhatXmlReserves) {
-  EXPECT_EQ(xml_text("a<b & \"c\">d"), "a&lt;b &amp; &quot;c&quot;&gt;d");
-  EXPECT_EQ(xml_text(std::string("a\x01z\n", 4)), "a?z\n");
-  EXPECT_EQ(xml_text("\xff\xfe"), "??");
-  EXPECT_EQ(xml_text("50 µs"), "50 µs");
+TEST(HtmlText, HoldsNothingThatXmlCannotOrAReaderObeys) {
+  EXPECT_EQ(html_escaped(std::string("a\x01z\n", 4)), "a\\x01z\n");
+  EXPECT_EQ(html_escaped("\xff\xfe"), "\\xff\\xfe");
+  EXPECT_EQ(html_escaped("a\u202eb\u2028c"), "a\\xe2\\x80\\xaeb\\xe2\\x80\\xa8c");
+}
+
+TEST(HtmlText, DataOfAScriptMeanTheSame) {
+  const nlohmann::json data = {{"name", "a\u202eb\u0085c\x1b\x7f"}};
+  const std::string safe = script_safe(data.dump());
+  EXPECT_EQ(safe, R"({"name":"a\u202eb\u0085c\u001b\u007f"})");
+  EXPECT_EQ(nlohmann::json::parse(safe), data);
 }
 
 TEST(CsvCell, IsQuotedWhereItMustBe) {
   EXPECT_EQ(csv_cell("plain"), "plain");
   EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
   EXPECT_EQ(csv_cell("say \"hi\""), "\"say \"\"hi\"\"\"");
+  EXPECT_EQ(csv_cell("a\nb\x1b[2J\u202e"), "a\\x0ab\\x1b[2J\\xe2\\x80\\xae");
   EXPECT_EQ(csv_cell(NAN), "");
   EXPECT_EQ(csv_cell(0.1 + 0.2), "0.30000000000000004");
 }

@@ -45,6 +45,23 @@ TEST_F(OutputFileTest, AppearsWhole) {
   EXPECT_EQ(files(), 1U);
 }
 
+TEST_F(OutputFileTest, NoRecordingIsReplaced) {
+  std::ofstream(path("a.bag")) << "#ROSBAG V2.0\n";
+  fs::create_symlink("a.bag", path("link.csv"));
+  EXPECT_THAT(problem(path("a.bag")), HasSubstr("a.bag: is a rosbag 2.0 bag; name another file"));
+  EXPECT_THAT(problem(path("link.csv")), HasSubstr("is a rosbag 2.0 bag"));
+  EXPECT_EQ(content("a.bag"), "#ROSBAG V2.0\n");
+}
+
+TEST_F(OutputFileTest, NoPartOfAFolderOfResultsIsReplaced) {
+  std::ofstream(path("frames.csv")) << "camera\n";
+  EXPECT_EQ(problem(path("frames.csv")), "none");
+  std::ofstream(path("manifest.json")) << "{}";
+  EXPECT_THAT(problem(path("frames.csv")), HasSubstr("is a part of "));
+  EXPECT_EQ(problem(path("page.html")), "none");
+  EXPECT_EQ(problem(path("hosts.csv")), "none");  // there is none yet
+}
+
 TEST_F(OutputFileTest, NothingIsLeftOfWhatWasNotWritten) {
   { OutputFile file(path("a.html")); }
   EXPECT_EQ(files(), 0U);

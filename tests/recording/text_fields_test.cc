@@ -1,0 +1,55 @@
+// Names that a terminal shows and does not obey.
+#include "recording/text_fields.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace simbench {
+namespace {
+
+TEST(PrintableName, WhatControlsATerminalIsEscaped) {
+  EXPECT_EQ(printable_name("a\x1b[2J\n\t\x7f"), "a\\x1b[2J\\x0a\\x09\\x7f");
+  EXPECT_EQ(printable_name("\u0080\u0085\u009b"), "\\xc2\\x80\\xc2\\x85\\xc2\\x9b");
+}
+
+TEST(PrintableName, WhatControlsDirectionAndLinesIsEscaped) {
+  for (const char* const mark :
+       {"\u061c", "\u200e", "\u200f", "\u2028", "\u2029", "\u202a", "\u202b", "\u202c", "\u202d",
+        "\u202e", "\u2060", "\u2066", "\u2067", "\u2068", "\u2069", "\ufeff"}) {
+    const std::string shown = printable_name(mark);
+    EXPECT_EQ(shown.size(), 4 * std::string(mark).size()) << shown;
+    for (const char byte : shown) EXPECT_TRUE(byte > ' ' && byte <= '~') << shown;
+  }
+  EXPECT_EQ(printable_name("a\u202eb"), "a\\xe2\\x80\\xaeb");
+}
+
+TEST(PrintableName, LettersOfAllScriptsStay) {
+  for (const char* const text : {"front 1", "Zürich", "50 µs", "左", "ش", "\U0001f3a5", "\u00a0",
+                                 "\u200b\u200c\u200d", "\u202f", "\u205f", "\u2070", "\ufefe"}) {
+    EXPECT_EQ(printable_name(text), text);
+  }
+}
+
+TEST(PrintableName, WhatIsNoUtf8IsEscapedByteByByte) {
+  EXPECT_EQ(printable_name("\xff\xc3"), "\\xff\\xc3");
+  EXPECT_EQ(printable_name("\xc0\x9b"), "\\xc0\\x9b");           // overlong
+  EXPECT_EQ(printable_name("\xe0\x82\x9b"), "\\xe0\\x82\\x9b");  // overlong
+  EXPECT_EQ(printable_name("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // a surrogate
+  EXPECT_EQ(printable_name("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");
+}
+
+TEST(PrintableLines, KeepsLineEnds) {
+  EXPECT_EQ(printable_lines("a\r\nb\u2028c\n"), "a\\x0d\nb\\xe2\\x80\\xa8c\n");
+}
+
+TEST(PrintableJson, MeansTheSame) {
+  const nlohmann::json data = {{"n", "a\u202e\u0085\x1b\x7f\ufeff\u200d ü"}, {"m", 1}};
+  const std::string text = printable_json(data.dump(2));
+  EXPECT_EQ(nlohmann::json::parse(text), data);
+  EXPECT_EQ(printable_lines(text), text);
+}
+
+}  // namespace
+}  // namespace simbench
