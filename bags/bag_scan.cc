@@ -6,11 +6,14 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "bags/camera_topics.h"
 #include "bags/fields.h"
+#include "bags/foxglove.h"
 #include "bags/frame_track.h"
+#include "bags/message_types.h"
 #include "bags/stream_maker.h"
 #include "recording/counted.h"
 #include "recording/text_fields.h"
@@ -20,6 +23,7 @@ namespace {
 
 constexpr std::size_t kHeaderHead = 512;
 constexpr std::size_t kMetadataHead = 8192;
+constexpr std::size_t kMostNamesGiven = 30;
 constexpr std::size_t kMostDevices = 64;
 
 // The places of one publisher's messages among all of its topic.
@@ -43,7 +47,7 @@ class PlacesInTopic {
 // Collects what the messages of a bag say.
 class Scanner final : public BagSink {
  public:
-  explicit Scanner(const ScanOptions& options) : options_(options) {}
+  Scanner(const std::string& path, const ScanOptions& options) : path_(path), options_(options) {}
 
   std::size_t on_topic(std::uint32_t number, const BagTopic& topic) override;
   void on_message(const BagMessage& message) override;
@@ -67,6 +71,7 @@ class Scanner final : public BagSink {
     std::string last_frame_id{};
   };
 
+  void expect_header(const BagTopic& topic) const;
   bool is_chosen(const BagTopic& topic, const CameraTopic& camera) const;
   void take_headed(const BagMessage& message);
   void take_ros_metadata(const BagMessage& message, FieldBytes& fields, FrameTrack& track);
@@ -75,6 +80,7 @@ class Scanner final : public BagSink {
   FrameTrack& track_of(std::uint32_t topic, std::string_view frame_id);
   FrameTrack& sdk_track(const std::string& base);
 
+  const std::string& path_;
   const ScanOptions& options_;
   std::vector<TopicScan> topics_;
   std::vector<Known> known_;
@@ -84,6 +90,38 @@ class Scanner final : public BagSink {
   std::map<std::string, std::map<std::string, std::string>> info_;
   std::uint64_t unreadable_ = 0;
 };
+
+// Nothing for what is no such message. `fields` stand behind it then.
+std::optional<MessageHeader> header_of(std::string_view head, const BagTopic& topic,
+                                       FieldBytes& fields) {
+  MessageHeader header;
+  if (is_foxglove(topic.type)) {
+    const std::optional<Nanoseconds> stamp = foxglove_stamp(head, topic.encoding);
+    if (!stamp) return std::nullopt;
+    header.stamp = *stamp;
+    return header;
+  }
+  header = read_header(fields);
+  return fields.ok() ? std::optional(header) : std::nullopt;
+}
+
+// A topic that a user named, and that is no camera's by its type.
+void Scanner::expect_header(const BagTopic& topic) const {
+  if (topic.headed == Headed::kYes) return;
+  const bool is_read = topic.encoding == Encoding::kRos1 || topic.encoding == Encoding::kCdr;
+  throw BagError(
+      fmt::format("{}: --topics: {}: found {}, {}; allowed: topics whose messages begin with a "
+                  "std_msgs/Header, "
+                  "or of Foxglove's images (simbench inspect lists the topics){}",
+                  path_, printable_name(topic.name),
+                  topic.type.empty() ? "an unknown type" : printable_name(topic.type),
+                  !is_read                      ? "whose serialisation is not read"
+                  : topic.headed == Headed::kNo ? "which has no header"
+                                                : "whose definition is not in the bag",
+                  is_read && topic.headed == Headed::kUnknown
+                      ? ". MCAP and recorders since ROS 2 Iron write definitions"
+                      : ""));
+}
 
 bool Scanner::is_chosen(const BagTopic& topic, const CameraTopic& camera) const {
   if (options_.topics.empty()) return true;
@@ -96,11 +134,12 @@ bool Scanner::is_chosen(const BagTopic& topic, const CameraTopic& camera) const 
 
 std::size_t Scanner::on_topic(std::uint32_t /*number*/, const BagTopic& topic) {
   CameraTopic camera = camera_topic(topic);
-  // A topic that is named is believed to begin with a header.
   const bool named = std::ranges::find(options_.topics, topic.name) != options_.topics.end();
-  if (named && camera.kind == TopicKind::kOther) camera = {TopicKind::kImage, topic.name};
+  if (named && camera.kind == TopicKind::kOther) {
+    expect_header(topic);
+    camera = {TopicKind::kImage, topic.name};
+  }
   if (!is_chosen(topic, camera)) camera = {};
-  if (topic.encoding == Encoding::kOther && camera.kind != TopicKind::kOther) camera = {};
   topics_.push_back({.topic = topic, .is_camera = camera.kind != TopicKind::kOther});
   known_.push_back({.camera = camera, .messages_of_name = &messages_of_names_[topic.name]});
   switch (camera.kind) {
@@ -109,7 +148,7 @@ std::size_t Scanner::on_topic(std::uint32_t /*number*/, const BagTopic& topic) {
     case TopicKind::kMetadata:
       return kMetadataHead;
     default:
-      return kHeaderHead;
+      return topic.encoding == Encoding::kJson ? kMetadataHead : kHeaderHead;
   }
 }
 
@@ -192,12 +231,14 @@ void Scanner::conclude() {
 void Scanner::take_headed(const BagMessage& message) {
   Known& known = known_[message.topic];
   const CameraTopic& camera = known.camera;
-  FieldBytes fields(message.head, topics_[message.topic].topic.encoding);
-  const MessageHeader header = read_header(fields);
-  if (!fields.ok()) {
+  const BagTopic& topic = topics_[message.topic].topic;
+  FieldBytes fields(message.head, topic.encoding);
+  const std::optional<MessageHeader> read = header_of(message.head, topic, fields);
+  if (!read) {
     ++unreadable_;
     return;
   }
+  const MessageHeader& header = *read;
   const bool sdk = camera.kind == TopicKind::kSdkImage;
   FrameTrack& track = sdk ? sdk_track(camera.base) : track_of(message.topic, header.frame);
   const std::int64_t log_ns = message.log_time.count();
@@ -288,12 +329,6 @@ void check_topics(const std::string& path, const ScanOptions& options, const Bag
       throw BagError(fmt::format("{}: --topics: found no {} in it (simbench inspect lists them)",
                                  path, quoted_bytes(name)));
     }
-    if (!found->is_camera) {
-      throw BagError(
-          fmt::format("{}: --topics: {} has messages whose serialisation is not read, allowed: "
-                      "those of ROS 1 and CDR",
-                      path, quoted_bytes(name)));
-    }
   }
 }
 
@@ -319,10 +354,20 @@ void note_order(const std::string& path, BagScan& scan) {
 
 }  // namespace
 
+std::vector<std::string> headed_topics(const BagScan& scan) {
+  std::vector<std::string> names;
+  for (const TopicScan& topic : scan.topics) {
+    if (names.size() == kMostNamesGiven) break;
+    const bool is_new = std::ranges::find(names, topic.topic.name) == names.end();
+    if (topic.topic.headed == Headed::kYes && is_new) names.push_back(topic.topic.name);
+  }
+  return names;
+}
+
 BagScan scan_bag(const std::string& path, const std::string& name, const ScanOptions& options,
                  const ReadProgress& progress) {
   BagScan scan;
-  Scanner scanner(options);
+  Scanner scanner(path, options);
   scan.facts = read_bag(path, scanner, progress);
   scanner.conclude();
   scan.topics = std::move(scanner.topics());

@@ -12,6 +12,9 @@
 // the order of the file. ROS 1's header.seq counts what was published, not what a camera exposed,
 // so it is no frame counter: a note says how many of its numbers are missing.
 //
+// A topic that looks like no camera's is read if the options name it and its messages begin with a
+// header, by the definition that stands in the bag (bags/message_types.h).
+//
 // Messages of one topic from several publishers or with several frame ids are several cameras,
 // unless one goes on where the other ended. What is left out (no stamps, copies of another stream)
 // is a note.
@@ -48,8 +51,12 @@ struct ScanOptions {
   bool all_topics = false;  // also counts the messages of topics that have no stamps
 };
 
+// The names of topics with messages that begin with a header: what ScanOptions::topics may name. At
+// most 30.
+std::vector<std::string> headed_topics(const BagScan& scan);
+
 // `name`: of the camera, if the bag has one, and of the host. Throws BagError; also for a topic of
-// the options that is not there or has no stamp.
+// the options that is not there, or whose messages begin with no header.
 BagScan scan_bag(const std::string& path, const std::string& name, const ScanOptions& options,
                  const ReadProgress& progress = {});
 

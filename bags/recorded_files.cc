@@ -114,10 +114,14 @@ void append(BagScan& scan, BagScan next) {
                           topic.type.empty() ? "unknown type" : printable_name(topic.type));
   }
   if (scan.topics.size() > kMostTopicsShown) topics += ", ...";
-  throw BagError(fmt::format(
-      "{}: found no frames of a camera; its topics: {}. --topics NAME,... reads any whose messages "
-      "begin with a header",
-      path, topics));
+  std::vector<std::string> headed = headed_topics(scan);
+  for (std::string& name : headed) name = printable_name(name);
+  throw BagError(fmt::format("{}: found no frames of a camera; its topics: {}. {}", path, topics,
+                             headed.empty()
+                                 ? "None has messages that begin with a header"
+                                 : fmt::format("Those whose messages begin with a header can be "
+                                               "read: --topics {}",
+                                               fmt::join(headed, ","))));
 }
 
 // Two cameras of different files with one name are told apart by their files.

@@ -3,8 +3,8 @@
 //
 // A recorder writes messages in order, other programs need not (chunks that were swapped, files
 // that were joined). Log times decide: a message is out of order if one before it in the file has a
-// later log time, and a copy if another has the same log time, header.seq, size and first bytes. Of
-// a topic whose log times are all the same nothing is taken for a copy.
+// later log time, and a copy if another has the same log time, header.seq, size and first bytes.
+// Where all log times of a topic are the same, nothing is taken for a copy.
 //
 //   TopicArrivals arrivals;
 //   arrivals.add(message);                // each, in order of the file

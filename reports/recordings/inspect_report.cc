@@ -106,18 +106,19 @@ std::vector<std::string> inspection_notes(const Inspection& file) {
 
 // What to do with it.
 std::string proposal(const Inspection& file) {
-  const auto name = [](const bags::TopicScan& scan) { return printable_name(scan.topic.name); };
   if (!file.recording.streams.empty()) {
     return fmt::format("Next: simbench diagnose {}", file.file);
   }
-  std::string topics;
-  for (const bags::TopicScan& scan : file.bag->topics) {
-    if (scan.messages > 1) topics += (topics.empty() ? "" : ",") + name(scan);
+  std::vector<std::string> topics = bags::headed_topics(*file.bag);
+  if (topics.empty()) {
+    return "No topic looks like a camera's, and none has messages that begin with a header.";
   }
+  for (std::string& topic : topics) topic = printable_name(topic);
   return fmt::format(
-      "No topic looks like a camera's. If the messages of some begin with a header, their stamps "
-      "can be read: simbench diagnose {} --topics {}",
-      file.file, topics.empty() ? "TOPIC,..." : topics);
+      "No topic looks like a camera's. The messages of some begin with a header, whose stamps can "
+      "be "
+      "read: simbench diagnose {} --topics {}",
+      file.file, fmt::join(topics, ","));
 }
 
 }  // namespace
