@@ -41,13 +41,16 @@ class BagError : public RecordedFileError {
 };
 
 enum class BagFormat : std::uint8_t { kRosbag, kMcap, kSqlite };
-enum class Encoding : std::uint8_t { kRos1, kCdr, kOther };
+enum class Encoding : std::uint8_t { kRos1, kCdr, kProtobuf, kJson, kOther };
+// Whether a topic's messages begin with a stamp that is read (bags/message_types.h).
+enum class Headed : std::uint8_t { kUnknown, kNo, kYes };
 
 struct BagTopic {
   std::string name{};       // "/camera/color/image_raw"
   std::string type{};       // as ROS 1 writes it: "sensor_msgs/Image"; empty: unknown
   std::string publisher{};  // where the format knows it
   Encoding encoding = Encoding::kOther;
+  Headed headed = Headed::kUnknown;
 };
 
 struct BagMessage {

@@ -1,17 +1,20 @@
 #include "bags/bag_scan.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <optional>
 #include <utility>
 
 #include "bags/camera_topics.h"
 #include "bags/fields.h"
+#include "bags/foxglove.h"
 #include "bags/frame_track.h"
+#include "bags/message_types.h"
+#include "bags/stream_maker.h"
 #include "recording/counted.h"
 #include "recording/text_fields.h"
 
@@ -20,18 +23,39 @@ namespace {
 
 constexpr std::size_t kHeaderHead = 512;
 constexpr std::size_t kMetadataHead = 8192;
+constexpr std::size_t kMostNamesGiven = 30;
 constexpr std::size_t kMostDevices = 64;
+
+// The places of one publisher's messages among all of its topic.
+class PlacesInTopic {
+ public:
+  // `own`: the number among the publisher's messages. Called for each of them.
+  void add(std::uint64_t own, std::uint64_t of_topic) {
+    if (others_.empty() && own == of_topic) return;
+    if (others_.empty()) alone_ = own;
+    others_.push_back(of_topic);
+  }
+  std::uint64_t of(std::uint64_t own) const {
+    return own < alone_ ? own : others_[static_cast<std::size_t>(own - alone_)];
+  }
+
+ private:
+  std::uint64_t alone_ = std::numeric_limits<std::uint64_t>::max();  // as long as nobody else wrote
+  std::vector<std::uint64_t> others_{};
+};
 
 // Collects what the messages of a bag say.
 class Scanner final : public BagSink {
  public:
-  explicit Scanner(const ScanOptions& options) : options_(options) {}
+  Scanner(const std::string& path, const ScanOptions& options) : path_(path), options_(options) {}
 
   std::size_t on_topic(std::uint32_t number, const BagTopic& topic) override;
   void on_message(const BagMessage& message) override;
 
   std::vector<TopicScan>& topics() { return topics_; }
   std::vector<FrameTrack>& tracks() { return tracks_; }
+  // Sorts by time of arrival, once, after the last message.
+  void conclude();
   std::vector<std::string> devices() const;
   // Messages of a camera's topic that are no such messages.
   std::uint64_t unreadable() const { return unreadable_; }
@@ -39,11 +63,15 @@ class Scanner final : public BagSink {
  private:
   struct Known {
     CameraTopic camera{};
+    TopicArrivals arrivals{};
+    PlacesInTopic places{};
+    std::uint64_t* messages_of_name = nullptr;
     std::map<std::string, std::size_t, std::less<>> tracks{};  // by frame id
     std::size_t last_track = 0;
     std::string last_frame_id{};
   };
 
+  void expect_header(const BagTopic& topic) const;
   bool is_chosen(const BagTopic& topic, const CameraTopic& camera) const;
   void take_headed(const BagMessage& message);
   void take_ros_metadata(const BagMessage& message, FieldBytes& fields, FrameTrack& track);
@@ -52,14 +80,48 @@ class Scanner final : public BagSink {
   FrameTrack& track_of(std::uint32_t topic, std::string_view frame_id);
   FrameTrack& sdk_track(const std::string& base);
 
+  const std::string& path_;
   const ScanOptions& options_;
   std::vector<TopicScan> topics_;
   std::vector<Known> known_;
+  std::map<std::string, std::uint64_t> messages_of_names_;  // of all publishers
   std::vector<FrameTrack> tracks_;
   std::map<std::string, std::size_t> sdk_tracks_;  // by base
   std::map<std::string, std::map<std::string, std::string>> info_;
   std::uint64_t unreadable_ = 0;
 };
+
+// Nothing for what is no such message. `fields` stand behind it then.
+std::optional<MessageHeader> header_of(std::string_view head, const BagTopic& topic,
+                                       FieldBytes& fields) {
+  MessageHeader header;
+  if (is_foxglove(topic.type)) {
+    const std::optional<Nanoseconds> stamp = foxglove_stamp(head, topic.encoding);
+    if (!stamp) return std::nullopt;
+    header.stamp = *stamp;
+    return header;
+  }
+  header = read_header(fields);
+  return fields.ok() ? std::optional(header) : std::nullopt;
+}
+
+// A topic that a user named, and that is no camera's by its type.
+void Scanner::expect_header(const BagTopic& topic) const {
+  if (topic.headed == Headed::kYes) return;
+  const bool is_read = topic.encoding == Encoding::kRos1 || topic.encoding == Encoding::kCdr;
+  throw BagError(
+      fmt::format("{}: --topics: {}: found {}, {}; allowed: topics whose messages begin with a "
+                  "std_msgs/Header, "
+                  "or of Foxglove's images (simbench inspect lists the topics){}",
+                  path_, printable_name(topic.name),
+                  topic.type.empty() ? "an unknown type" : printable_name(topic.type),
+                  !is_read                      ? "whose serialisation is not read"
+                  : topic.headed == Headed::kNo ? "which has no header"
+                                                : "whose definition is not in the bag",
+                  is_read && topic.headed == Headed::kUnknown
+                      ? ". MCAP and recorders since ROS 2 Iron write definitions"
+                      : ""));
+}
 
 bool Scanner::is_chosen(const BagTopic& topic, const CameraTopic& camera) const {
   if (options_.topics.empty()) return true;
@@ -72,35 +134,30 @@ bool Scanner::is_chosen(const BagTopic& topic, const CameraTopic& camera) const 
 
 std::size_t Scanner::on_topic(std::uint32_t /*number*/, const BagTopic& topic) {
   CameraTopic camera = camera_topic(topic);
-  // A topic that is named is believed to begin with a header.
   const bool named = std::ranges::find(options_.topics, topic.name) != options_.topics.end();
-  if (named && camera.kind == TopicKind::kOther) camera = {TopicKind::kImage, topic.name};
+  if (named && camera.kind == TopicKind::kOther) {
+    expect_header(topic);
+    camera = {TopicKind::kImage, topic.name};
+  }
   if (!is_chosen(topic, camera)) camera = {};
-  if (topic.encoding == Encoding::kOther && camera.kind != TopicKind::kOther) camera = {};
   topics_.push_back({.topic = topic, .is_camera = camera.kind != TopicKind::kOther});
-  known_.push_back({.camera = camera});
+  known_.push_back({.camera = camera, .messages_of_name = &messages_of_names_[topic.name]});
   switch (camera.kind) {
     case TopicKind::kOther:
-      return options_.all_topics ? 0 : kLeaveOut;
+      return options_.all_topics ? TopicArrivals::kCompared : kLeaveOut;
     case TopicKind::kMetadata:
       return kMetadataHead;
     default:
-      return kHeaderHead;
+      return topic.encoding == Encoding::kJson ? kMetadataHead : kHeaderHead;
   }
 }
 
 void Scanner::on_message(const BagMessage& message) {
-  TopicScan& scan = topics_[message.topic];
-  if (scan.messages == 0) {
-    scan.first = message.log_time;
-  } else if (message.log_time - scan.last > scan.longest_gap) {
-    scan.longest_gap = message.log_time - scan.last;
-    scan.gap_at = scan.last;
-  }
-  scan.last = message.log_time;
-  ++scan.messages;
-  scan.bytes += message.size;
-  switch (known_[message.topic].camera.kind) {
+  topics_[message.topic].bytes += message.size;
+  Known& known = known_[message.topic];
+  known.places.add(known.arrivals.size(), (*known.messages_of_name)++);
+  known.arrivals.add(message);
+  switch (known.camera.kind) {
     case TopicKind::kOther:
       return;
     case TopicKind::kSdkMetadata:
@@ -141,15 +198,47 @@ FrameTrack& Scanner::sdk_track(const std::string& base) {
   return tracks_[found->second];
 }
 
+// By log time; what a copy of a message said is left out.
+void order_frames(FrameTrack& track, const TopicArrivals& arrivals) {
+  std::vector<RawFrame>& frames = track.frames;
+  std::erase_if(frames, [&arrivals](const RawFrame& f) { return arrivals.is_copy(f.message); });
+  const auto order = [](const RawFrame& frame) { return std::pair(frame.log_ns, frame.message); };
+  if (std::ranges::is_sorted(frames, {}, &RawFrame::log_ns)) return;
+  std::ranges::sort(frames, {}, order);
+  // Metadata of the SDK that stood away from its image.
+  std::size_t kept = 0;
+  for (const RawFrame& frame : frames) {
+    if (kept > 0 && frame.message == kNoMessage && frames[kept - 1].log_ns == frame.log_ns) {
+      frames[kept - 1].take_metadata(frame);
+    } else {
+      frames[kept++] = frame;
+    }
+  }
+  frames.resize(kept);
+}
+
+void Scanner::conclude() {
+  for (std::size_t i = 0; i < topics_.size(); ++i) known_[i].arrivals.conclude(topics_[i]);
+  for (FrameTrack& track : tracks_) {
+    const Known& known = known_[track.topic];
+    order_frames(track, known.arrivals);
+    for (RawFrame& frame : track.frames) {
+      if (frame.message != kNoMessage) frame.message = known.places.of(frame.message);
+    }
+  }
+}
+
 void Scanner::take_headed(const BagMessage& message) {
-  const TopicScan& scan = topics_[message.topic];
-  const CameraTopic& camera = known_[message.topic].camera;
-  FieldBytes fields(message.head, scan.topic.encoding);
-  const MessageHeader header = read_header(fields);
-  if (!fields.ok()) {
+  Known& known = known_[message.topic];
+  const CameraTopic& camera = known.camera;
+  const BagTopic& topic = topics_[message.topic].topic;
+  FieldBytes fields(message.head, topic.encoding);
+  const std::optional<MessageHeader> read = header_of(message.head, topic, fields);
+  if (!read) {
     ++unreadable_;
     return;
   }
+  const MessageHeader& header = *read;
   const bool sdk = camera.kind == TopicKind::kSdkImage;
   FrameTrack& track = sdk ? sdk_track(camera.base) : track_of(message.topic, header.frame);
   const std::int64_t log_ns = message.log_time.count();
@@ -158,9 +247,17 @@ void Scanner::take_headed(const BagMessage& message) {
                      track.frames.back().message == kNoMessage;
   if (!begun) track.frames.push_back({.log_ns = log_ns});
   RawFrame& frame = track.frames.back();
-  frame.message = scan.messages - 1;
+  frame.message = known.arrivals.size() - 1;
   frame.header_ns = header.stamp.count();
-  if (header.sequence && frame.counter == kNoStamp) frame.counter = *header.sequence;
+  if (header.sequence) {
+    // The SDK writes the camera's count there; what publishes to ROS counts its own messages.
+    if (!sdk) {
+      known.arrivals.set_sequence(*header.sequence);
+    } else if (frame.counter == kNoStamp) {
+      frame.counter = *header.sequence;
+    }
+  }
+  track.topic = message.topic;
   if (camera.kind == TopicKind::kMetadata) take_ros_metadata(message, fields, track);
 }
 
@@ -224,159 +321,6 @@ std::vector<std::string> Scanner::devices() const {
   return texts;
 }
 
-// Makes streams of tracks: one for each base, named.
-class StreamMaker {
- public:
-  StreamMaker(const std::string& path, const std::string& name, const ScanOptions& options,
-              BagScan& scan)
-      : path_(path), name_(name), options_(options), scan_(scan) {}
-
-  void make(std::vector<FrameTrack>& tracks) {
-    drop_empty(tracks);
-    join_publishers(tracks);
-    leave_out_copies(tracks);
-    for (const FrameTrack& track : tracks) {
-      RecordedStream stream;
-      if (!make_stream(track, path_, stream, scan_.notes)) continue;
-      point_to_images(track, stream);
-      names_.push_back(named(track));
-      scan_.streams.push_back(std::move(stream));
-    }
-    name_streams();
-  }
-
- private:
-  static void drop_empty(std::vector<FrameTrack>& tracks) {
-    for (FrameTrack& track : tracks) {
-      std::erase_if(track.frames, [](const RawFrame& f) { return f.message == kNoMessage; });
-    }
-    std::erase_if(tracks, [](const FrameTrack& track) { return track.frames.empty(); });
-  }
-
-  // A publisher that begins where another one of its topic ended is the same, restarted.
-  void join_publishers(std::vector<FrameTrack>& tracks) {
-    for (std::size_t i = 0; i < tracks.size(); ++i) {
-      for (std::size_t j = i + 1; j < tracks.size(); ++j) {
-        FrameTrack& a = tracks[i];
-        FrameTrack& b = tracks[j];
-        if (a.topic_name != b.topic_name) continue;
-        if (a.frame_id == b.frame_id && a.frames.back().log_ns <= b.frames.front().log_ns) {
-          a.frames.insert(a.frames.end(), b.frames.begin(), b.frames.end());
-          tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(j--));
-          continue;
-        }
-        if (!shared_.insert(a.topic_name).second) continue;
-        scan_.notes.push_back(fmt::format(
-            "{}: {}: several cameras write this topic ({}); each is a stream of its own", path_,
-            printable_name(a.topic_name),
-            a.frame_id == b.frame_id ? std::string("publishers of one frame id")
-                                     : fmt::format("frame ids {} and {}", quoted_bytes(a.frame_id),
-                                                   quoted_bytes(b.frame_id))));
-      }
-    }
-  }
-
-  // The topics of a stream that are not the best, copies of other streams, and what only repeats
-  // the stamps of a camera's images.
-  void leave_out_copies(std::vector<FrameTrack>& tracks) {
-    if (!options_.topics.empty()) return;
-    std::map<std::string, std::pair<int, std::uint32_t>> best;  // rank and topic, by base
-    for (const FrameTrack& track : tracks) {
-      if (is_derived(track.camera.base)) continue;
-      const auto candidate = std::pair(track.camera.rank, track.topic);
-      const auto [found, is_new] = best.try_emplace(track.camera.base, candidate);
-      if (!is_new) found->second = std::min(found->second, candidate);
-    }
-    std::vector<FrameTrack> kept;
-    for (FrameTrack& track : tracks) {
-      const auto found = best.find(track.camera.base);
-      const bool speaks = found != best.end() && found->second.second == track.topic;
-      if (speaks && !(is_secondary(track) && has_images(track, tracks))) {
-        kept.push_back(std::move(track));
-      } else {
-        left_out_.push_back(std::move(track));
-      }
-    }
-    tracks = std::move(kept);
-    std::vector<std::string> names;
-    for (const FrameTrack& track : left_out_) names.push_back(printable_name(track.topic_name));
-    if (names.empty()) return;
-    scan_.notes.push_back(
-        fmt::format("{}: left out, since other topics have the stamps of the same frames: {} "
-                    "(--topics chooses)",
-                    path_, fmt::join(names, ", ")));
-  }
-
-  static bool is_secondary(const FrameTrack& track) {
-    return track.camera.kind == TopicKind::kPoints || track.camera.kind == TopicKind::kCameraInfo;
-  }
-  static bool has_images(const FrameTrack& track, const std::vector<FrameTrack>& tracks) {
-    return std::ranges::any_of(tracks, [&track](const FrameTrack& other) {
-      if (is_secondary(other)) return false;
-      const std::string camera = "/" + camera_of(other.camera).camera;
-      return (track.camera.base + "/").starts_with(camera + "/");
-    });
-  }
-
-  // A stream of metadata: its frames are the images with the same header stamps.
-  void point_to_images(const FrameTrack& track, RecordedStream& stream) const {
-    if (track.camera.kind != TopicKind::kMetadata) return;
-    const FrameTrack* images = nullptr;
-    for (const FrameTrack& other : left_out_) {
-      if (other.camera.base != track.camera.base || other.camera.kind != TopicKind::kImage)
-        continue;
-      if (images == nullptr || other.camera.rank < images->camera.rank) images = &other;
-    }
-    if (images == nullptr) return;
-    std::map<std::int64_t, std::uint64_t> by_stamp;
-    for (const RawFrame& frame : images->frames) by_stamp.emplace(frame.header_ns, frame.message);
-    std::map<std::uint64_t, std::int64_t> stamps;
-    for (const RawFrame& frame : track.frames) stamps.emplace(frame.message, frame.header_ns);
-    for (std::uint64_t& message : stream.origin.messages) {
-      const auto found = by_stamp.find(stamps.at(message));
-      message = found == by_stamp.end() ? kNoMessage : found->second;
-    }
-    stream.origin.topic = images->topic_name;
-  }
-
-  NamedStream named(const FrameTrack& track) const {
-    NamedStream name = camera_of(track.camera);
-    if (shared_.contains(track.topic_name)) {
-      name.camera += fmt::format(
-          "{}{}", name.camera.empty() ? "" : " ",
-          track.frame_id.empty() ? fmt::format("publisher {}", track.topic) : track.frame_id);
-    }
-    return name;
-  }
-
-  // A bag of one camera is that camera: its file has the better name. Two streams never share both
-  // names.
-  void name_streams() {
-    std::set<std::string> cameras;
-    for (const NamedStream& name : names_) cameras.insert(name.camera);
-    std::map<std::string, int> uses;
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      RecordedStream& stream = scan_.streams[i];
-      const std::string& own = names_[i].camera;
-      stream.camera = cameras.size() == 1 || own.empty() ? name_ : own;
-      stream.camera = printable_name(stream.camera);
-      stream.stream = printable_name(names_[i].stream);
-      stream.host = printable_name(name_);
-      if (const int use = ++uses[stream.camera + "\n" + stream.stream]; use > 1) {
-        stream.stream += fmt::format(" ({})", use);
-      }
-    }
-  }
-
-  const std::string& path_;
-  const std::string& name_;
-  const ScanOptions& options_;
-  BagScan& scan_;
-  std::set<std::string> shared_;
-  std::vector<FrameTrack> left_out_;
-  std::vector<NamedStream> names_;
-};
-
 void check_topics(const std::string& path, const ScanOptions& options, const BagScan& scan) {
   for (const std::string& name : options.topics) {
     const auto found = std::ranges::find_if(
@@ -385,53 +329,58 @@ void check_topics(const std::string& path, const ScanOptions& options, const Bag
       throw BagError(fmt::format("{}: --topics: found no {} in it (simbench inspect lists them)",
                                  path, quoted_bytes(name)));
     }
-    if (!found->is_camera) {
-      throw BagError(
-          fmt::format("{}: --topics: {} has messages whose serialisation is not read, allowed: "
-                      "those of ROS 1 and CDR",
-                      path, quoted_bytes(name)));
-    }
+  }
+}
+
+void note_order(const std::string& path, BagScan& scan) {
+  std::uint64_t out_of_order = 0;
+  std::uint64_t copies = 0;
+  for (const TopicScan& topic : scan.topics) {
+    out_of_order += topic.out_of_order;
+    copies += topic.copies;
+  }
+  scan.facts.messages -= copies;
+  if (out_of_order > 0) {
+    scan.notes.push_back(fmt::format(
+        "{}: {} out of order of their log times; they were sorted", path,
+        out_of_order == 1 ? "1 message stands" : fmt::format("{} messages stand", out_of_order)));
+  }
+  if (copies > 0) {
+    scan.notes.push_back(fmt::format(
+        "{}: {} twice in it, with the same log time and content; each counts once", path,
+        copies == 1 ? "1 message stands" : fmt::format("{} messages stand", copies)));
   }
 }
 
 }  // namespace
 
-double TopicScan::rate_hz() const {
-  const double span_s = to_seconds(last - first);
-  return messages < 2 || !(span_s > 0) ? 0 : static_cast<double>(messages - 1) / span_s;
-}
-
-void TopicScan::append(const TopicScan& next) {
-  if (messages == 0) {
-    *this = next;
-    return;
+std::vector<std::string> headed_topics(const BagScan& scan) {
+  std::vector<std::string> names;
+  for (const TopicScan& topic : scan.topics) {
+    if (names.size() == kMostNamesGiven) break;
+    const bool is_new = std::ranges::find(names, topic.topic.name) == names.end();
+    if (topic.topic.headed == Headed::kYes && is_new) names.push_back(topic.topic.name);
   }
-  const auto take_gap = [this](Nanoseconds gap, Nanoseconds at) {
-    if (gap <= longest_gap) return;
-    longest_gap = gap;
-    gap_at = at;
-  };
-  take_gap(next.first - last, last);
-  take_gap(next.longest_gap, next.gap_at);
-  last = next.last;
-  messages += next.messages;
-  bytes += next.bytes;
+  return names;
 }
 
 BagScan scan_bag(const std::string& path, const std::string& name, const ScanOptions& options,
                  const ReadProgress& progress) {
   BagScan scan;
-  Scanner scanner(options);
+  Scanner scanner(path, options);
   scan.facts = read_bag(path, scanner, progress);
+  scanner.conclude();
   scan.topics = std::move(scanner.topics());
   scan.devices = scanner.devices();
   scan.notes = scan.facts.notes;
   check_topics(path, options, scan);
+  note_order(path, scan);
   if (scanner.unreadable() > 0) {
     scan.notes.push_back(fmt::format("{}: {} of its cameras' topics left out: no such message",
                                      path, counted(scanner.unreadable(), "message")));
   }
-  StreamMaker(path, name, options, scan).make(scanner.tracks());
+  make_streams(scanner.tracks(),
+               {.path = path, .name = name, .all_chosen = !options.topics.empty()}, scan);
   return scan;
 }
 

@@ -7,6 +7,14 @@
 // StreamOrigin says which it was; one source serves a whole stream, so a stamp that a frame lacks
 // makes the next best source that of all.
 //
+// Frames are in order of their log times, whatever the order of the file; a message that stands
+// twice counts once (bags/topic_scan.h). StreamOrigin::messages count all of a topic's messages in
+// the order of the file. ROS 1's header.seq counts what was published, not what a camera exposed,
+// so it is no frame counter: a note says how many of its numbers are missing.
+//
+// A topic that looks like no camera's is read if the options name it and its messages begin with a
+// header, by the definition that stands in the bag (bags/message_types.h).
+//
 // Messages of one topic from several publishers or with several frame ids are several cameras,
 // unless one goes on where the other ended. What is left out (no stamps, copies of another stream)
 // is a note.
@@ -14,8 +22,8 @@
 //   const BagScan scan = scan_bag("rig.bag", "rig", {});
 //   for (const RecordedStream& stream : scan.streams) ...
 //
-// Memory: 80 bytes a frame while it reads, then 32. Source: docs/reference/bags.md
-// sections 2 and 3.
+// Memory: 80 bytes a frame while it reads, then 32; 16 a message of other topics that are counted.
+// Source: docs/reference/bags.md sections 2 and 3.
 #pragma once
 
 #include <cstdint>
@@ -23,26 +31,10 @@
 #include <vector>
 
 #include "bags/bag.h"
+#include "bags/topic_scan.h"
 #include "recording/recorded_streams.h"
 
 namespace simbench::bags {
-
-struct TopicScan {
-  BagTopic topic{};
-  std::uint64_t messages = 0;
-  std::uint64_t bytes = 0;
-  // By log time, in order of the file.
-  Nanoseconds first{};
-  Nanoseconds last{};
-  Nanoseconds longest_gap{};
-  Nanoseconds gap_at{};  // its begin
-  bool is_camera = false;
-
-  // Mean, by the log times; 0 with fewer than two messages.
-  double rate_hz() const;
-  // The same topic in the file that follows, where it has messages.
-  void append(const TopicScan& next);
-};
 
 struct BagScan {
   BagFacts facts;
@@ -59,8 +51,12 @@ struct ScanOptions {
   bool all_topics = false;  // also counts the messages of topics that have no stamps
 };
 
+// The names of topics with messages that begin with a header: what ScanOptions::topics may name. At
+// most 30.
+std::vector<std::string> headed_topics(const BagScan& scan);
+
 // `name`: of the camera, if the bag has one, and of the host. Throws BagError; also for a topic of
-// the options that is not there or has no stamp.
+// the options that is not there, or whose messages begin with no header.
 BagScan scan_bag(const std::string& path, const std::string& name, const ScanOptions& options,
                  const ReadProgress& progress = {});
 

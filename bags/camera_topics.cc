@@ -10,6 +10,17 @@ namespace {
 constexpr std::array<std::string_view, 12> kStreamNames = {
     "depth",  "color", "colour", "rgb",     "infra",    "infra1",
     "infra2", "ir",    "ir2",    "fisheye", "fisheye1", "fisheye2"};
+constexpr std::array<std::string_view, 10> kImageTypes = {
+    "sensor_msgs/Image",
+    "sensor_msgs/CompressedImage",
+    "ffmpeg_image_transport_msgs/FFMPEGPacket",
+    "depthai_ros_msgs/FFMPEGPacket",
+    "foxglove.CompressedImage",
+    "foxglove.CompressedVideo",
+    "foxglove.RawImage",
+    "foxglove_msgs/CompressedImage",
+    "foxglove_msgs/CompressedVideo",
+    "foxglove_msgs/RawImage"};
 // What image transports append.
 constexpr std::array<std::string_view, 5> kTransports = {"compressed", "compressedDepth", "theora",
                                                          "ffmpeg", "zstd"};
@@ -53,11 +64,13 @@ CameraTopic sdk_topic(std::string_view name) {
 }
 
 TopicKind kind_of(std::string_view type) {
-  if (type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage") {
-    return TopicKind::kImage;
+  if (is_one_of(kImageTypes, type)) return TopicKind::kImage;
+  if (type == "sensor_msgs/CameraInfo" || type == "foxglove.CameraCalibration") {
+    return TopicKind::kCameraInfo;
   }
-  if (type == "sensor_msgs/CameraInfo") return TopicKind::kCameraInfo;
-  if (type == "sensor_msgs/PointCloud2") return TopicKind::kPoints;
+  if (type == "sensor_msgs/PointCloud2" || type == "foxglove.PointCloud") {
+    return TopicKind::kPoints;
+  }
   if (type == "realsense2_camera_msgs/Metadata" || type == "realsense2_camera/Metadata") {
     return TopicKind::kMetadata;
   }
@@ -78,7 +91,7 @@ int rank_of(TopicKind kind, std::string_view last, bool transported) {
 CameraTopic camera_topic(const BagTopic& topic) {
   if (is_of_sdk(topic.name)) return sdk_topic(topic.name);
   const TopicKind kind = kind_of(topic.type);
-  if (kind == TopicKind::kOther) return {};
+  if (kind == TopicKind::kOther || topic.headed == Headed::kNo) return {};
   std::vector<std::string_view> parts = parts_of(topic.name);
   const bool transported = parts.size() > 1 && is_one_of(kTransports, parts.back());
   if (transported) parts.pop_back();

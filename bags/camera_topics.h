@@ -1,7 +1,8 @@
 // Which topics are of cameras, by type and name, and which camera's.
 //
-// ROS: images, compressed images, point clouds and camera infos carry a header with a stamp;
-// realsense-ros' Metadata also the camera's own stamps. The topics of one stream have one base
+// ROS: images, compressed images, packets of video, point clouds and camera infos carry a header
+// with a stamp, Foxglove's schemas of them a timestamp; realsense-ros' Metadata also the camera's
+// own stamps. The topics of one stream have one base
 // ("/camera/depth" of "/camera/depth/image_rect_raw"), and the one with the best stamps speaks for
 // it: metadata, then the raw image, other images, camera info, points. A base that ends in the name
 // of a stream (depth, color, infra1, ...) is a stream of the camera before it; else it is the

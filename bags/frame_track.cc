@@ -114,7 +114,7 @@ bool is_of_host(const FrameTrack& track, const StampField& source, std::int64_t 
   return first_ns > kLeastEpochNs;
 }
 
-// Whether the camera, or its driver, counted the frames.
+// Whether the camera counted the frames.
 bool are_counted(const std::vector<RawFrame>& frames) {
   const bool all = std::all_of(frames.begin(), frames.end(),
                                [](const RawFrame& frame) { return frame.counter >= 0; });
@@ -134,6 +134,12 @@ void RawFrame::set(std::string_view name, std::int64_t value) {
   const auto known = std::find_if(kMetadataNames.begin(), kMetadataNames.end(),
                                   [name](const MetadataName& entry) { return entry.name == name; });
   if (known != kMetadataNames.end()) this->*known->member = value;
+}
+
+void RawFrame::take_metadata(const RawFrame& part) {
+  for (const MetadataName& entry : kMetadataNames) {
+    if (part.*entry.member != kNoStamp) this->*entry.member = part.*entry.member;
+  }
 }
 
 std::optional<std::int64_t> whole_number(std::string_view text) {

@@ -31,6 +31,8 @@ struct RawFrame {
   // A value of the frame's metadata, by the name that the SDK or realsense-ros gives it; unknown
   // names are ignored.
   void set(std::string_view name, std::int64_t value);
+  // Takes what metadata of the same frame says.
+  void take_metadata(const RawFrame& part);
 };
 
 struct FrameTrack {

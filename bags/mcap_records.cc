@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bags/fields.h"
+#include "bags/message_types.h"
 
 namespace simbench::bags {
 namespace {
@@ -15,7 +16,16 @@ constexpr std::size_t kChunkFixed = 8 + 8 + 8 + 4 + 4 + 8;  // all but the compr
 constexpr std::size_t kMostCompressionName = 64;
 constexpr std::size_t kMostRecordRead = std::size_t{64} << 10;
 constexpr std::size_t kMostNames = std::size_t{32} << 20;
+// The first field of a message stands behind few comments.
+constexpr std::size_t kMostDefinition = std::size_t{8} << 10;
 constexpr std::string_view kLastMagic = "\x89MCAP0\r\n";
+
+Encoding encoding_of(std::string_view name) {
+  if (name == "cdr") return Encoding::kCdr;
+  if (name == "ros1") return Encoding::kRos1;
+  if (name == "protobuf") return Encoding::kProtobuf;
+  return name == "json" ? Encoding::kJson : Encoding::kOther;
+}
 
 // Reads as much of a record's content as its names can be in.
 std::string record_start(ByteStream& content, std::uint64_t length) {
@@ -104,10 +114,14 @@ bool McapChannels::take_schema(std::string_view bytes) {
   FieldBytes fields(bytes, Encoding::kRos1);
   const std::uint16_t id = fields.u16();
   const std::string_view name = fields.text();
+  const std::string_view encoding = fields.text();
   if (!fields.ok()) return false;
   if (schemas_.contains(id)) return true;
-  if (!has_room(name.size())) return false;
-  schemas_.emplace(id, ros1_type(std::string(name)));
+  const bool is_text = encoding == "ros1msg" || encoding == "ros2msg";
+  const std::string_view definition =
+      is_text ? fields.text().substr(0, kMostDefinition) : std::string_view();
+  if (!has_room(name.size() + definition.size())) return false;
+  schemas_.emplace(id, Schema{ros1_type(std::string(name)), std::string(definition)});
   return true;
 }
 
@@ -125,9 +139,7 @@ bool McapChannels::take_channel(std::string_view bytes) {
   channel.topic = {.name = std::string(topic),
                    .type = {},
                    .publisher = publisher,
-                   .encoding = encoding == "cdr"    ? Encoding::kCdr
-                               : encoding == "ros1" ? Encoding::kRos1
-                                                    : Encoding::kOther};
+                   .encoding = encoding_of(encoding)};
   channels_.emplace(id, std::move(channel));
   return true;
 }
@@ -140,7 +152,9 @@ McapChannels::Channel* McapChannels::find(std::uint16_t id) {
 void McapChannels::announce(Channel& channel, BagSink& sink) {
   if (channel.number != kNoTopic) return;
   const auto schema = schemas_.find(channel.schema);
-  if (schema != schemas_.end()) channel.topic.type = schema->second;
+  if (schema != schemas_.end()) channel.topic.type = schema->second.name;
+  channel.topic.headed = headed_by(
+      channel.topic, schema != schemas_.end() ? schema->second.definition : std::string_view());
   channel.number = announced_++;
   channel.wanted = sink.on_topic(channel.number, channel.topic);
   if (channel.wanted != kLeaveOut) channel.wanted = std::min(channel.wanted, kMostHead);

@@ -79,7 +79,12 @@ class McapChannels {
   bool take_channel(std::string_view bytes);
   bool has_room(std::size_t size);
 
-  std::map<std::uint16_t, std::string> schemas_{};  // names
+  struct Schema {
+    std::string name{};
+    std::string definition{};  // its begin
+  };
+
+  std::map<std::uint16_t, Schema> schemas_{};
   std::map<std::uint16_t, Channel> channels_{};
   std::uint32_t announced_ = 0;
   std::size_t text_bytes_ = 0;

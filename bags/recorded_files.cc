@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
+#include "bags/frame_track.h"
 #include "bags/rosbag2_folder.h"
 #include "recording/text_fields.h"
 #include "scenarios/input_file.h"
@@ -24,26 +26,57 @@ std::vector<std::string> files_of(const std::string& path) {
   return fs::is_directory(path) ? rosbag2_files(path) : std::vector<std::string>{path};
 }
 
-// The part of a recording that goes on in its next file.
+// How many messages of a topic stand in the files so far.
+std::uint64_t messages_of(const BagScan& scan, const std::string& topic) {
+  std::uint64_t messages = 0;
+  for (const TopicScan& known : scan.topics) {
+    if (known.topic.name == topic) messages += known.messages + known.copies;
+  }
+  return messages;
+}
+
+// By arrival, whatever the order of the files was.
+void sort_by_arrival(RecordedStream& stream) {
+  std::vector<std::size_t> order(stream.frames.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return stream.frames[i].arrival; });
+  std::vector<StampedFrame> frames;
+  std::vector<std::uint64_t> messages;
+  for (const std::size_t i : order) {
+    frames.push_back(stream.frames[i]);
+    messages.push_back(stream.origin.messages[i]);
+  }
+  stream.frames = std::move(frames);
+  stream.origin.messages = std::move(messages);
+}
+
+void append(RecordedStream& stream, const RecordedStream& next, std::uint64_t messages_before) {
+  const bool goes_on = next.frames.front().arrival >= stream.frames.back().arrival;
+  for (const std::uint64_t message : next.origin.messages) {
+    stream.origin.messages.push_back(message == kNoMessage ? message : messages_before + message);
+  }
+  stream.frames.insert(stream.frames.end(), next.frames.begin(), next.frames.end());
+  if (!goes_on) sort_by_arrival(stream);
+  stream.counted = stream.counted && next.counted;
+  if (stream.counted) return;
+  for (std::size_t i = 0; i < stream.frames.size(); ++i) stream.frames[i].counter = i;
+}
+
+// The part of a recording that stands in its next file.
 void append(BagScan& scan, BagScan next) {
   for (RecordedStream& stream : next.streams) {
+    const std::uint64_t before = messages_of(scan, stream.origin.topic);
     const auto known = std::ranges::find_if(scan.streams, [&stream](const RecordedStream& s) {
       return s.camera == stream.camera && s.stream == stream.stream;
     });
-    if (known == scan.streams.end()) {
-      scan.streams.push_back(std::move(stream));
+    if (known != scan.streams.end()) {
+      append(*known, stream, before);
       continue;
     }
-    const std::uint64_t before =
-        known->origin.messages.empty() ? 0 : known->origin.messages.back() + 1;
-    for (const std::uint64_t message : stream.origin.messages) {
-      known->origin.messages.push_back(before + message);
+    for (std::uint64_t& message : stream.origin.messages) {
+      if (message != kNoMessage) message += before;
     }
-    const std::size_t frames_before = known->frames.size();
-    for (StampedFrame frame : stream.frames) {
-      if (!stream.counted) frame.counter += frames_before;
-      known->frames.push_back(frame);
-    }
+    scan.streams.push_back(std::move(stream));
   }
   for (TopicScan& topic : next.topics) {
     const auto known = std::ranges::find_if(scan.topics, [&topic](const TopicScan& t) {
@@ -51,7 +84,7 @@ void append(BagScan& scan, BagScan next) {
     });
     if (known == scan.topics.end()) {
       scan.topics.push_back(std::move(topic));
-    } else if (topic.messages > 0) {
+    } else {
       known->append(topic);
     }
   }
@@ -70,10 +103,14 @@ void append(BagScan& scan, BagScan next) {
                           topic.type.empty() ? "unknown type" : printable_name(topic.type));
   }
   if (scan.topics.size() > kMostTopicsShown) topics += ", ...";
-  throw BagError(fmt::format(
-      "{}: found no frames of a camera; its topics: {}. --topics NAME,... reads any whose messages "
-      "begin with a header",
-      path, topics));
+  std::vector<std::string> headed = headed_topics(scan);
+  for (std::string& name : headed) name = printable_name(name);
+  throw BagError(fmt::format("{}: found no frames of a camera; its topics: {}. {}", path, topics,
+                             headed.empty()
+                                 ? "None has messages that begin with a header"
+                                 : fmt::format("Those whose messages begin with a header can be "
+                                               "read: --topics {}",
+                                               fmt::join(headed, ","))));
 }
 
 }  // namespace
@@ -115,7 +152,8 @@ BagScan scan_recording(const std::string& path, const std::string& name, const S
   std::optional<BagScan> all;
   const std::uint64_t total = recording_bytes(path);
   std::uint64_t before = 0;
-  for (const std::string& file : files_of(path)) {
+  const std::vector<std::string> files = files_of(path);
+  for (const std::string& file : files) {
     BagScan scan = scan_bag(file, name, options, [&](std::uint64_t done, std::uint64_t) {
       if (progress) progress(before + done, total);
     });
@@ -127,6 +165,9 @@ BagScan scan_recording(const std::string& path, const std::string& name, const S
     }
   }
   if (!all) throw BagError(path + ": found no bag in this folder");
+  if (files.size() > 1) {
+    for (RecordedStream& stream : all->streams) stream.origin.file = path;
+  }
   return std::move(*all);
 }
 

@@ -11,6 +11,7 @@
 
 #include "bags/bag.h"
 #include "bags/damage_notes.h"
+#include "bags/message_types.h"
 #include "bags/rosbag_records.h"
 #include "recording/byte_stream.h"
 #include "recording/text_fields.h"
@@ -168,10 +169,13 @@ bool RosbagReading::read_connection(const RecordHeader& record, ByteStream& stre
   };
   Connection& added = connections_[*number];
   added.topic = topics_++;
-  added.head = sink_.on_topic(added.topic, {.name = std::string(*topic),
-                                            .type = text("type"),
-                                            .publisher = text("callerid"),
-                                            .encoding = Encoding::kRos1});
+  BagTopic described{.name = std::string(*topic),
+                     .type = text("type"),
+                     .publisher = text("callerid"),
+                     .encoding = Encoding::kRos1};
+  described.headed = headed_by(
+      described, field_of(connection_data_, "message_definition").value_or(std::string_view()));
+  added.head = sink_.on_topic(added.topic, described);
   return true;
 }
 

@@ -23,6 +23,7 @@
 #include "bags/bag.h"
 #include "bags/damage_notes.h"
 #include "bags/fields.h"
+#include "bags/message_types.h"
 #include "recording/byte_stream.h"
 #include "scenarios/input_file.h"
 
@@ -30,6 +31,7 @@ namespace simbench::bags {
 namespace {
 
 constexpr int kMostText = 1 << 20;  // of a row of topics or of the schema, bytes
+constexpr std::size_t kMostDefinitions = 4096;
 constexpr std::uint64_t kMostResumes = 10'000;
 constexpr std::uint64_t kProgressMessages = 4096;
 constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";
@@ -128,6 +130,7 @@ class SqliteBagReader {
   void open();
   void note_leftovers();
   void expect_tables();
+  void read_definitions();
   void read_topics();
   void read_messages();
   // Reads from an id on, and says how that ended; `last_` is the last id that was seen.
@@ -154,6 +157,8 @@ class SqliteBagReader {
   Blob blob_{};
   BagFacts facts_{.format = BagFormat::kSqlite};
   std::map<std::int64_t, Topic> topics_{};
+  std::map<std::string, std::string> definitions_{};  // by type
+  bool has_definitions_ = false;
   std::vector<char> head_{};
   std::int64_t last_ = std::numeric_limits<std::int64_t>::min();
   std::int64_t most_id_ = 0;
@@ -224,12 +229,28 @@ void SqliteBagReader::expect_tables() {
   while ((result = sqlite3_step(tables.get())) == SQLITE_ROW) {
     const std::string name = column_text(tables.get(), 0);
     wanted += name == "topics" || name == "messages" ? 1 : 0;
+    has_definitions_ = has_definitions_ || name == "message_definitions";
     if (++count <= 10) found += (count > 1 ? ", " : "") + name;
   }
   if (wanted == 2) return;
   if (result != SQLITE_DONE) refuse(std::string("SQLite: ") + sqlite3_errmsg(database_.get()));
   refuse("found " + (count == 0 ? "no tables" : "the tables " + found) +
          ", allowed: a bag of rosbag2, which has topics and messages");
+}
+
+// Recorders since ROS 2 Iron write them.
+void SqliteBagReader::read_definitions() {
+  if (!has_definitions_) return;
+  sqlite3_stmt* statement = nullptr;
+  sqlite3_prepare_v2(database_.get(),
+                     "SELECT substr(topic_type,1,256), substr(encoded_message_definition,1,8192) "
+                     "FROM message_definitions WHERE encoding='ros2msg'",
+                     -1, &statement, nullptr);
+  const Statement rows(statement);
+  // Damaged definitions are none.
+  while (rows && sqlite3_step(rows.get()) == SQLITE_ROW && definitions_.size() < kMostDefinitions) {
+    definitions_.emplace(ros1_type(column_text(rows.get(), 0)), column_text(rows.get(), 1));
+  }
 }
 
 void SqliteBagReader::read_topics() {
@@ -248,6 +269,9 @@ void SqliteBagReader::read_topics() {
     topic.type = ros1_type(column_text(rows.get(), 2));
     const std::string format = column_text(rows.get(), 3);
     topic.encoding = format == "cdr" ? Encoding::kCdr : Encoding::kOther;
+    const auto definition = definitions_.find(topic.type);
+    topic.headed = headed_by(
+        topic, definition == definitions_.end() ? std::string_view() : definition->second);
     const auto number = static_cast<std::uint32_t>(topics_.size());
     std::size_t needed = sink_.on_topic(number, topic);
     if (needed != kLeaveOut) needed = std::min(needed, kMostHead);
@@ -435,6 +459,7 @@ BagFacts SqliteBagReader::read() {
   facts_.indexed = !cut_;
   note_leftovers();
   expect_tables();
+  read_definitions();
   read_topics();
   read_messages();
   conclude();

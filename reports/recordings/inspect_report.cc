@@ -107,15 +107,17 @@ std::vector<std::string> inspection_notes(const Inspection& file) {
 
 // How a bag without streams of a camera can be read.
 std::string topics_proposal(const Inspection& file) {
-  std::string topics;
-  for (const bags::TopicScan& scan : file.bag->topics) {
-    if (scan.messages > 1) topics += (topics.empty() ? "" : ",") + scan.topic.name;
+  std::vector<std::string> topics = bags::headed_topics(*file.bag);
+  if (topics.empty()) {
+    return "No topic looks like a camera's, and none has messages that begin with a header.";
   }
+  for (std::string& topic : topics) topic = printable_name(topic);
   return fmt::format(
-      "No topic looks like a camera's. If the messages of some begin with a header, their stamps "
-      "can be read: {}",
-      simbench_line(
-          {"simbench", "diagnose", file.file, "--topics", topics.empty() ? "TOPIC,..." : topics}));
+      "No topic looks like a camera's. The messages of some begin with a header, whose stamps can "
+      "be "
+      "read: {}",
+      simbench_line({"simbench", "diagnose", file.file, "--topics",
+                     fmt::format("{}", fmt::join(topics, ","))}));
 }
 
 // What to do with the files, and with each folder. A heading is not broken into lines.

@@ -74,10 +74,12 @@ McapWriter::McapWriter(McapOptions options)
       finished_(std::string(kMagic) + mcap_record(1, length_and("ros2") + length_and("tests"))) {}
 
 std::uint16_t McapWriter::channel(std::string_view topic, std::string_view type,
-                                  std::string_view encoding, std::string_view publisher) {
+                                  std::string_view encoding, std::string_view publisher,
+                                  std::string_view definition) {
   const std::uint16_t id = ++channels_;
-  const std::string schema = mcap_record(
-      3, bytes_of(id, 2) + length_and(type) + length_and("ros2msg") + length_and("uint8 x"));
+  const std::string schema =
+      mcap_record(3, bytes_of(id, 2) + length_and(type) +
+                         length_and(definition.empty() ? "" : "ros2msg") + length_and(definition));
   const std::string pairs = publisher.empty() ? "" : length_and("callerid") + length_and(publisher);
   const std::string channel = mcap_record(4, bytes_of(id, 2) + bytes_of(id, 2) + length_and(topic) +
                                                  length_and(encoding) + length_and(pairs));

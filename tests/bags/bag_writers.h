@@ -41,8 +41,10 @@ class McapWriter {
  public:
   explicit McapWriter(McapOptions options);
 
+  // A text `definition` is of ros2msg; empty: the schema has none.
   std::uint16_t channel(std::string_view topic, std::string_view type, std::string_view encoding,
-                        std::string_view publisher = {});
+                        std::string_view publisher = {},
+                        std::string_view definition = "std_msgs/Header header");
   // Into the chunk: a record as it is.
   void record(std::uint8_t op, std::string_view content);
   void message(std::uint16_t channel, std::uint64_t log_time_ns, std::string_view data);

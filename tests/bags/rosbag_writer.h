@@ -67,13 +67,14 @@ class RosbagWriter {
       : chunks_(chunks), chunk_bytes_(chunk_bytes) {}
 
   std::uint32_t add_topic(const std::string& name, const std::string& type,
-                          const std::string& publisher = "/recorder") {
+                          const std::string& publisher = "/recorder",
+                          const std::string& definition = "Header header\n") {
     const auto number = static_cast<std::uint32_t>(connections_.size());
     const std::string header =
         field("conn", little_endian(number)) + field("op", "\x07") + field("topic", name);
-    const std::string data =
-        field("topic", name) + field("type", type) + field("md5sum", std::string(32, '0')) +
-        field("message_definition", "Header header\n") + field("callerid", publisher);
+    const std::string data = field("topic", name) + field("type", type) +
+                             field("md5sum", std::string(32, '0')) +
+                             field("message_definition", definition) + field("callerid", publisher);
     connections_.push_back(record(header, data));
     return number;
   }
