@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/evaluation/stability/noises.h"
 #include "tests/nonempty.h"
 
 namespace simbench::evaluation {
@@ -23,21 +24,6 @@ using testing::SizeIs;
 constexpr Deviation kAllDeviations[] = {Deviation::kAdev, Deviation::kAdevPlain, Deviation::kMdev,
                                         Deviation::kHdev, Deviation::kHdevPlain, Deviation::kTdev,
                                         Deviation::kMtie};
-
-TimeErrorSeries series_of(std::vector<double> x_s, double interval_s = 1) {
-  return {.interval_s = interval_s, .pieces = {{.start_s = 0, .x_s = std::move(x_s)}}};
-}
-
-// The 1000 fractional frequencies of NIST SP 1065, section 12.4, as 1001 time errors.
-std::vector<double> nist_series() {
-  std::vector<double> x = {0};
-  std::uint64_t n = 1'234'567'890;
-  for (int i = 0; i < 1000; ++i) {
-    x.push_back(x.back() + static_cast<double>(n) / 2'147'483'647);
-    n = n * 16'807 % 2'147'483'647;
-  }
-  return x;
-}
 
 TEST(Stability, GivesAllSevenDigitsOfTheNistTestSet) {
   struct Published {

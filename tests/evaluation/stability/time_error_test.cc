@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+#include "tests/evaluation/stability/noises.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -17,14 +17,6 @@ using testing::SizeIs;
 
 TimeErrorSeries one_piece(std::vector<double> x_s, double interval_s = 1) {
   return {.interval_s = interval_s, .pieces = {{.start_s = 100, .x_s = std::move(x_s)}}};
-}
-
-std::vector<double> white_noise(std::uint32_t seed, std::size_t points, double sigma) {
-  boost::random::mt19937 random(seed);
-  boost::random::normal_distribution<double> normal(0, sigma);
-  std::vector<double> x(points);
-  for (double& value : x) value = normal(random);
-  return x;
 }
 
 TEST(TimeErrorSummary, IsThatOfTheHandCalculatedSeries) {
