@@ -113,11 +113,11 @@ double degrees_of_freedom(std::int64_t points, Deviation deviation, std::int64_t
   }
   const double reach = estimator.order + 1;  // in tau; terms farther apart are hardly correlated
   const double lags = std::min(terms, reach * per_tau);
-  const double scale = std::min(1.0, kMostSteps / lags);
+  const double scale = std::min(1.0, kMostLags / lags);
   double filter = 1;
   double filter_of_all = 1;  // of the variance itself, which under flicker phase keeps ln m
   if (!estimator.modified) {
-    const bool limit = static_cast<int>(noise) <= 0 && factor * reach > kMostSteps;
+    const bool limit = static_cast<int>(noise) <= 0 && factor * reach > kMostLags;
     filter = limit ? 0 : factor * scale;
     filter_of_all = limit ? 0 : factor;
   }

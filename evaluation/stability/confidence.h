@@ -9,7 +9,7 @@
 // The degrees of freedom are those of the combined algorithm of Greenhall and Riley: one algorithm
 // for the structure of a deviation (the order d of its differences: 2, HDEV 3; modified or not;
 // overlapping or not) and the noise. It sums the squared correlations of the terms. Beyond
-// kMostSteps lags, the lags are widened in proportion: within 4 % of the full sum; a deviation's
+// kMostLags lags, the lags are widened in proportion: within 4 % of the full sum; a deviation's
 // limits move by half of that at most. White phase noise has a sum of d + 1 lags.
 //
 // Over gaps: the pooled variance weights each piece by its terms M, so its degrees of freedom are
@@ -20,7 +20,7 @@
 // times its value, or farther. MTIE is a largest value, not a mean of squares: it has no such
 // interval, and to ask for one is a programming error.
 //
-// Complexity: O(kMostSteps) for each different length of a piece.
+// Complexity: O(kMostLags) for each different length of a piece.
 //
 // Sources: C. A. Greenhall and W. J. Riley, "Uncertainty of stability variances based on finite
 // differences", PTTI 2003; W. J. Riley, NIST SP 1065, 2008, section 5.4.
@@ -40,7 +40,7 @@ namespace simbench::evaluation {
 
 inline constexpr double kConfidence = 0.95;
 inline constexpr double kFewestDegrees = 3;
-inline constexpr double kMostSteps = 100;
+inline constexpr double kMostLags = 100;
 
 // A deviation at m intervals of one piece of so many points, which must have a term.
 double degrees_of_freedom(std::int64_t points, Deviation deviation, std::int64_t m,

@@ -38,6 +38,30 @@ TEST(TimeErrorSummary, KeepsSmallNoiseOnALargeOffset) {
   EXPECT_NEAR(summary.dynamic_te_ms, 1e3 * std::ldexp(1, -21), 1e-12);
 }
 
+TEST(TimeErrorSummary, PercentilesAreThoseOfAllMagnitudes) {
+  // The magnitudes 0 to 1000 us, in two pieces, with both signs.
+  TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0}, {.start_s = 5000}}};
+  for (int i = 1000; i >= 0; --i) {
+    series.pieces[i < 300 ? 0 : 1].x_s.push_back((i % 2 == 0 ? 1e-6 : -1e-6) * i);
+  }
+  const TimeErrorSummary summary = time_error_of(series);
+  EXPECT_NEAR(summary.p50_te_ms, 0.5, 1e-12);
+  EXPECT_NEAR(summary.p95_te_ms, 0.95, 1e-12);
+  EXPECT_NEAR(summary.p99_te_ms, 0.99, 1e-12);
+  EXPECT_NEAR(summary.p99_9_te_ms, 0.999, 1e-12);
+  EXPECT_NEAR(summary.dynamic_te_p2p_ms, 1 + 0.999, 1e-12);
+  EXPECT_EQ(time_error_of({}).p99_te_ms, 0);
+}
+
+TEST(ShareWithin, CountsAllPoints) {
+  TimeErrorSeries series = one_piece({1e-6, -2e-6, 3e-6});
+  series.pieces.push_back({.start_s = 200, .x_s = {-4e-6}});
+  EXPECT_EQ(share_within(series, 0.5e-6), 0);
+  EXPECT_EQ(share_within(series, 2e-6), 0.5) << "the limit itself is within";
+  EXPECT_EQ(share_within(series, 1), 1);
+  EXPECT_EQ(share_within({}, 1), std::nullopt);
+}
+
 TEST(FrequencyOffset, OfALineIsItsSlopeAndItsMeanStays) {
   TimeErrorSeries series{.interval_s = 0.5};
   // Two pieces of one line, far from the zero of time.
