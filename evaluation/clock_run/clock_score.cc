@@ -56,11 +56,9 @@ std::vector<StabilityPoint> largest(std::span<const StabilityCurves> clocks,
 StabilityCurves curves_of(const ClockReadings& readings) {
   std::vector<StabilityCurves> slaves;
   for (std::size_t host = 1; host < readings.errors_s.size(); ++host) {
-    const TimeErrorSeries series{
-        .interval_s = readings.interval_s,
-        .pieces = {{.start_s = readings.start_s, .x_s = readings.errors_s[host]}}};
-    Stability found = stability_of(series);
-    slaves.push_back(static_cast<StabilityCurves&&>(found));
+    slaves.push_back(stability_curves(
+        {.interval_s = readings.interval_s,
+         .pieces = {{.start_s = readings.start_s, .x_s = readings.errors_s[host]}}}));
   }
   return pooled(slaves);
 }

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/stability/compensated_sum.h"
+#include "evaluation/stability/confidence.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -149,6 +151,29 @@ std::vector<StabilityPoint> in_ms(std::vector<StabilityPoint> points) {
   return points;
 }
 
+void add_certainty(const TimeErrorSeries& series, StabilityCurves& curves) {
+  // No deviation reaches farther than ADEV.
+  const std::vector<std::optional<NoiseType>> noises =
+      noise_types_over_octaves(series, curves.adev.size());
+  for (const ClockCurve& curve : clock_curves()) {
+    if (curve.deviation == Deviation::kMtie) continue;
+    std::int64_t m = 1;
+    std::size_t octave = 0;
+    for (StabilityPoint& point : curves.*curve.points) {
+      const std::optional<NoiseType> noise = noises[octave++];
+      if (noise && point.value > 0) {
+        const double degrees = degrees_of_freedom(series, curve.deviation, m, *noise);
+        const Interval interval = deviation_interval(point.value, degrees);
+        point.certainty = {.low = interval.low,
+                           .high = interval.high,
+                           .noise = *noise,
+                           .reliable = degrees >= kFewestDegrees};
+      }
+      m *= 2;
+    }
+  }
+}
+
 }  // namespace
 
 std::optional<StabilityPoint> deviation_at(const TimeErrorSeries& series, Deviation deviation,
@@ -175,21 +200,26 @@ std::vector<StabilityPoint> deviation_over_octaves(const TimeErrorSeries& series
   }
 }
 
-Stability stability_of(const TimeErrorSeries& series) {
+StabilityCurves stability_curves(const TimeErrorSeries& series) {
+  StabilityCurves curves{.adev = deviation_over_octaves(series, Deviation::kAdev),
+                         .mdev = deviation_over_octaves(series, Deviation::kMdev),
+                         .hdev = deviation_over_octaves(series, Deviation::kHdev),
+                         .mtie_ms = in_ms(deviation_over_octaves(series, Deviation::kMtie))};
+  curves.tdev_ms = curves.mdev;
+  for (StabilityPoint& point : curves.tdev_ms) point.value *= 1e3 * point.tau_s / std::sqrt(3.0);
+  return curves;
+}
+
+Stability stability_of(TimeErrorSeries series) {
   Stability stability;
+  static_cast<StabilityCurves&>(stability) = stability_curves(series);
+  add_certainty(series, stability);
   stability.interval_s = series.interval_s;
   stability.points = points_in(series);
   for (const TimeErrorPiece& piece : series.pieces) stability.pieces += piece.x_s.empty() ? 0 : 1;
-  stability.adev = deviation_over_octaves(series, Deviation::kAdev);
-  stability.mdev = deviation_over_octaves(series, Deviation::kMdev);
-  stability.hdev = deviation_over_octaves(series, Deviation::kHdev);
-  stability.tdev_ms = stability.mdev;
-  for (StabilityPoint& point : stability.tdev_ms) {
-    point.value *= 1e3 * point.tau_s / std::sqrt(3.0);
-  }
-  stability.mtie_ms = in_ms(deviation_over_octaves(series, Deviation::kMtie));
   stability.time_error = time_error_of(series);
   stability.steps = steps_of(series);
+  stability.series = std::move(series);
   return stability;
 }
 

@@ -21,6 +21,11 @@
 // frequency drift leaves as it is. With a constant frequency offset MTIE grows without end; the
 // deviations do not see it.
 //
+// Each deviation has the power-law noise that the series shows at its tau and the 95 % confidence
+// interval under it (evaluation/stability/noise_type.h, confidence.h), where the noise can be told
+// and the value is not 0. MTIE has none: it is a largest value, which grows with the length of the
+// series, not an estimate of a mean.
+//
 // Numerics: differences are taken first, so that an offset of the clock costs no digits; rolling
 // sums are compensated. Complexity: O(N) for each value; MTIE over all octaves O(N log N), by
 // doubling its windows; MTIE at one m O(N log m). Memory: two series.
@@ -39,6 +44,7 @@
 #include <span>
 #include <vector>
 
+#include "evaluation/stability/noise_type.h"
 #include "evaluation/stability/time_error.h"
 
 namespace simbench::evaluation {
@@ -53,17 +59,26 @@ enum class Deviation : std::uint8_t {
   kMtie
 };
 
+struct Certainty {
+  double low = 0;  // the 95 % confidence interval, in the value's unit
+  double high = 0;
+  NoiseType noise = NoiseType::kWhiteFm;
+  bool reliable = true;  // kFewestDegrees of freedom or more
+};
+
 struct StabilityPoint {
   double tau_s = 0;
   double value = 0;        // without a unit; of TDEV and MTIE see where it stands
   std::int64_t terms = 0;  // differences, or windows of MTIE, that it is of
+  std::optional<Certainty> certainty{};
 };
 
-// At tau = m intervals, m >= 1; TDEV and MTIE in seconds. Nothing if no piece is long enough.
+// At tau = m intervals, m >= 1, without its certainty; TDEV and MTIE in seconds. Nothing if no
+// piece is long enough.
 std::optional<StabilityPoint> deviation_at(const TimeErrorSeries& series, Deviation deviation,
                                            std::int64_t m);
 
-// At m = 1, 2, 4 ... as far as it exists; TDEV and MTIE in seconds.
+// At m = 1, 2, 4 ... as far as it exists, without certainty; TDEV and MTIE in seconds.
 std::vector<StabilityPoint> deviation_over_octaves(const TimeErrorSeries& series,
                                                    Deviation deviation);
 
@@ -82,19 +97,24 @@ struct ClockCurve {
   const char* title;
   const char* axis;  // with its unit
   bool in_text;      // and in figures
+  Deviation deviation;
   std::vector<StabilityPoint> StabilityCurves::*points;
 };
 
 inline constexpr ClockCurve kClockCurves[] = {
-    {"adev", "Allan deviation", "ADEV", true, &StabilityCurves::adev},
-    {"mdev", "Modified Allan deviation", "MDEV", false, &StabilityCurves::mdev},
-    {"hdev", "Hadamard deviation", "HDEV", false, &StabilityCurves::hdev},
-    {"tdev_ms", "Time deviation, ms", "TDEV ms", true, &StabilityCurves::tdev_ms},
-    {"mtie_ms", "Maximum time interval error, ms", "MTIE ms", true, &StabilityCurves::mtie_ms},
+    {"adev", "Allan deviation", "ADEV", true, Deviation::kAdev, &StabilityCurves::adev},
+    {"mdev", "Modified Allan deviation", "MDEV", false, Deviation::kMdev, &StabilityCurves::mdev},
+    {"hdev", "Hadamard deviation", "HDEV", false, Deviation::kHdev, &StabilityCurves::hdev},
+    {"tdev_ms", "Time deviation, ms", "TDEV ms", true, Deviation::kTdev, &StabilityCurves::tdev_ms},
+    {"mtie_ms", "Maximum time interval error, ms", "MTIE ms", true, Deviation::kMtie,
+     &StabilityCurves::mtie_ms},
 };
 inline std::span<const ClockCurve> clock_curves() { return kClockCurves; }
 
-// The curves of a series, with the time error itself.
+// The curves alone, without certainty.
+StabilityCurves stability_curves(const TimeErrorSeries& series);
+
+// The curves with their certainty, and the time error itself.
 // Everything of a series without points is 0 and empty.
 struct Stability : StabilityCurves {
   double interval_s = 0;
@@ -102,7 +122,8 @@ struct Stability : StabilityCurves {
   std::int64_t pieces = 0;  // that have points
   TimeErrorSummary time_error{};
   std::vector<TimeErrorStep> steps{};
+  TimeErrorSeries series{};  // that all of this is of
 };
-Stability stability_of(const TimeErrorSeries& series);
+Stability stability_of(TimeErrorSeries series);
 
 }  // namespace simbench::evaluation

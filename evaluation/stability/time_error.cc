@@ -56,6 +56,15 @@ double limit_of(const std::vector<std::vector<double>>& jumps, double largest_er
   return std::max(kStepFactor * (scatter > 0 ? scatter : mean), kRounding * largest_error);
 }
 
+std::vector<double> sorted_magnitudes(const TimeErrorSeries& series) {
+  std::vector<double> magnitudes;
+  for (const TimeErrorPiece& piece : series.pieces) {
+    for (const double x : piece.x_s) magnitudes.push_back(std::abs(x));
+  }
+  std::sort(magnitudes.begin(), magnitudes.end());
+  return magnitudes;
+}
+
 }  // namespace
 
 void check_series(const TimeErrorSeries& series) {
@@ -150,11 +159,28 @@ TimeErrorSummary time_error_of(const TimeErrorSeries& series) {
       smallest = std::min(smallest, x);
     }
   }
+  const std::vector<double> magnitudes = sorted_magnitudes(series);
   return {.max_te_ms = 1e3 * std::max(largest, -smallest),
           .rms_te_ms = 1e3 * std::sqrt(square),
           .constant_te_ms = 1e3 * mean,
           .dynamic_te_ms = 1e3 * std::sqrt(variance),
-          .dynamic_te_p2p_ms = 1e3 * (largest - smallest)};
+          .dynamic_te_p2p_ms = 1e3 * (largest - smallest),
+          .p50_te_ms = 1e3 * quantile_of_sorted(magnitudes, 0.5),
+          .p95_te_ms = 1e3 * quantile_of_sorted(magnitudes, 0.95),
+          .p99_te_ms = 1e3 * quantile_of_sorted(magnitudes, 0.99),
+          .p99_9_te_ms = 1e3 * quantile_of_sorted(magnitudes, 0.999)};
+}
+
+std::optional<double> share_within(const TimeErrorSeries& series, double limit_s) {
+  check_series(series);
+  const std::int64_t points = points_in(series);
+  if (points == 0) return std::nullopt;
+  std::int64_t within = 0;
+  for (const TimeErrorPiece& piece : series.pieces) {
+    within += std::count_if(piece.x_s.begin(), piece.x_s.end(),
+                            [&](double x) { return std::abs(x) <= limit_s; });
+  }
+  return static_cast<double>(within) / static_cast<double>(points);
 }
 
 }  // namespace simbench::evaluation

@@ -70,7 +70,17 @@ struct TimeErrorSummary {
   double constant_te_ms = 0;
   double dynamic_te_ms = 0;      // RMS
   double dynamic_te_p2p_ms = 0;  // largest minus smallest
+  // The magnitudes that so many percent of the points do not exceed: by linear
+  // interpolation between neighbours in order of size (quantile() of evaluation/statistics).
+  double p50_te_ms = 0;
+  double p95_te_ms = 0;
+  double p99_te_ms = 0;
+  double p99_9_te_ms = 0;
 };
+// O(N log N). Memory: a copy of the points.
 TimeErrorSummary time_error_of(const TimeErrorSeries& series);
+
+// The share of all points whose magnitude is at most that, from 0 to 1; nothing without a point.
+std::optional<double> share_within(const TimeErrorSeries& series, double limit_s);
 
 }  // namespace simbench::evaluation

@@ -2,8 +2,6 @@
 // (power-law noise in NIST SP 1065 and IEEE Std 1139), over many seeds.
 #include <gmock/gmock.h>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "evaluation/stability/stability.h"
+#include "tests/evaluation/stability/noises.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -19,44 +18,14 @@ constexpr int kSeeds = 200;
 constexpr std::size_t kPoints = 1024;
 constexpr double kSigma = 1e-9;
 
-std::vector<double> white(boost::random::mt19937& random) {
-  boost::random::normal_distribution<double> normal(0, kSigma);
-  std::vector<double> noise(kPoints);
-  for (double& value : noise) value = normal(random);
-  return noise;
-}
-
-std::vector<double> sums(std::vector<double> noise) {
-  double sum = 0;
-  for (double& value : noise) value = sum += value;
-  return noise;
-}
-
-// Power over frequency: white noise behind the filter (1 - 1/z)^(-1/2). Source: Kasdin 1995,
-// "Discrete simulation of colored noise", Proc. IEEE 83(5).
-std::vector<double> flicker(boost::random::mt19937& random) {
-  std::vector<double> response = {1};
-  for (std::size_t k = 1; k < kPoints; ++k) {
-    const auto order = static_cast<double>(k);
-    response.push_back(response.back() * (order - 0.5) / order);
-  }
-  const std::vector<double> input = white(random);
-  std::vector<double> output(kPoints);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    double value = 0;
-    for (std::size_t k = 0; k <= i; ++k) value += response[k] * input[i - k];
-    output[i] = value;
-  }
-  return output;
-}
+std::vector<double> white(std::uint32_t seed) { return white_noise(seed, kPoints, kSigma); }
 
 // The deviation at m = 8, 16, 32 and 64: root of the mean variance over the seeds.
 std::vector<double> mean_deviation(
-    const std::function<std::vector<double>(boost::random::mt19937&)>& noise, Deviation deviation) {
+    const std::function<std::vector<double>(std::uint32_t seed)>& noise, Deviation deviation) {
   std::vector<double> variances(4);
   for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
-    boost::random::mt19937 random(seed);
-    const TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0, .x_s = noise(random)}}};
+    const TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0, .x_s = noise(seed)}}};
     for (std::size_t i = 0; i < variances.size(); ++i) {
       const double value = deviation_at(series, deviation, std::int64_t{8} << i)->value;
       variances[i] += value * value / kSeeds;
@@ -77,24 +46,24 @@ void expect_power_law(const std::vector<double>& values, double slope, double le
 }
 
 TEST(StabilityOfNoise, WhitePhase) {
-  const auto noise = [](auto& random) { return white(random); };
-  expect_power_law(mean_deviation(noise, Deviation::kAdev), -1, std::sqrt(3) * kSigma);
-  expect_power_law(mean_deviation(noise, Deviation::kAdevPlain), -1, std::sqrt(3) * kSigma);
-  expect_power_law(mean_deviation(noise, Deviation::kMdev), -1.5, std::sqrt(3) * kSigma);
-  expect_power_law(mean_deviation(noise, Deviation::kTdev), -0.5, kSigma);
-  expect_power_law(mean_deviation(noise, Deviation::kHdev), -1, std::sqrt(10.0 / 3) * kSigma);
+  expect_power_law(mean_deviation(white, Deviation::kAdev), -1, std::sqrt(3) * kSigma);
+  expect_power_law(mean_deviation(white, Deviation::kAdevPlain), -1, std::sqrt(3) * kSigma);
+  expect_power_law(mean_deviation(white, Deviation::kMdev), -1.5, std::sqrt(3) * kSigma);
+  expect_power_law(mean_deviation(white, Deviation::kTdev), -0.5, kSigma);
+  expect_power_law(mean_deviation(white, Deviation::kHdev), -1, std::sqrt(10.0 / 3) * kSigma);
 }
 
 TEST(StabilityOfNoise, FlickerPhase) {
+  const auto noise = [](std::uint32_t seed) { return flicker(white(seed)); };
   // h_1 = 4 pi sigma^2; the filter's sharp end at half the rate stands in the ADEV alone.
   const double h1 = 4 * std::numbers::pi * kSigma * kSigma;
   const double modified = 3 * std::log(256.0 / 27) * h1 / (8 * std::numbers::pi * std::numbers::pi);
-  expect_power_law(mean_deviation(flicker, Deviation::kMdev), -1, std::sqrt(modified));
-  expect_power_law(mean_deviation(flicker, Deviation::kTdev), 0, std::sqrt(modified / 3));
+  expect_power_law(mean_deviation(noise, Deviation::kMdev), -1, std::sqrt(modified));
+  expect_power_law(mean_deviation(noise, Deviation::kTdev), 0, std::sqrt(modified / 3));
 }
 
 TEST(StabilityOfNoise, WhiteFrequency) {
-  const auto noise = [](auto& random) { return sums(white(random)); };
+  const auto noise = [](std::uint32_t seed) { return sums(white(seed)); };
   expect_power_law(mean_deviation(noise, Deviation::kAdev), -0.5, kSigma);
   expect_power_law(mean_deviation(noise, Deviation::kHdev), -0.5, kSigma);
   expect_power_law(mean_deviation(noise, Deviation::kMdev), -0.5, kSigma * std::sqrt(0.5));
@@ -104,7 +73,7 @@ TEST(StabilityOfNoise, WhiteFrequency) {
 TEST(StabilityOfNoise, FlickerFrequency) {
   // h_-1 = sigma^2 / pi.
   const double h = kSigma * kSigma / std::numbers::pi;
-  const auto noise = [](auto& random) { return sums(flicker(random)); };
+  const auto noise = [](std::uint32_t seed) { return sums(flicker(white(seed))); };
   expect_power_law(mean_deviation(noise, Deviation::kAdev), 0, std::sqrt(2 * std::log(2) * h));
   expect_power_law(mean_deviation(noise, Deviation::kMdev), 0,
                    std::sqrt(h * (27 * std::log(3) - 32 * std::log(2)) / 8));
@@ -113,7 +82,7 @@ TEST(StabilityOfNoise, FlickerFrequency) {
 }
 
 TEST(StabilityOfNoise, RandomWalkFrequency) {
-  const auto noise = [](auto& random) { return sums(sums(white(random))); };
+  const auto noise = [](std::uint32_t seed) { return sums(sums(white(seed))); };
   expect_power_law(mean_deviation(noise, Deviation::kAdev), 0.5, kSigma / std::sqrt(3));
   expect_power_law(mean_deviation(noise, Deviation::kMdev), 0.5, kSigma * std::sqrt(11.0 / 40));
   expect_power_law(mean_deviation(noise, Deviation::kHdev), 0.5, kSigma / std::sqrt(6));

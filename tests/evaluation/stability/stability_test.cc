@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/stability/confidence.h"
+#include "tests/evaluation/stability/noises.h"
 #include "tests/nonempty.h"
 
 namespace simbench::evaluation {
@@ -23,21 +25,6 @@ using testing::SizeIs;
 constexpr Deviation kAllDeviations[] = {Deviation::kAdev, Deviation::kAdevPlain, Deviation::kMdev,
                                         Deviation::kHdev, Deviation::kHdevPlain, Deviation::kTdev,
                                         Deviation::kMtie};
-
-TimeErrorSeries series_of(std::vector<double> x_s, double interval_s = 1) {
-  return {.interval_s = interval_s, .pieces = {{.start_s = 0, .x_s = std::move(x_s)}}};
-}
-
-// The 1000 fractional frequencies of NIST SP 1065, section 12.4, as 1001 time errors.
-std::vector<double> nist_series() {
-  std::vector<double> x = {0};
-  std::uint64_t n = 1'234'567'890;
-  for (int i = 0; i < 1000; ++i) {
-    x.push_back(x.back() + static_cast<double>(n) / 2'147'483'647);
-    n = n * 16'807 % 2'147'483'647;
-  }
-  return x;
-}
 
 TEST(Stability, GivesAllSevenDigitsOfTheNistTestSet) {
   struct Published {
@@ -298,6 +285,48 @@ TEST(Stability, RollingSumsForgetWhatHasLeftThem) {
   constant[0] = 1e9 + 0.1;
   const auto outlier = deviation_at(series_of(constant), Deviation::kMdev, m);
   EXPECT_DOUBLE_EQ(outlier->value, (1e9 + 0.1) / m / std::sqrt(2 * terms) / m);
+}
+
+TEST(Stability, DeviationsHaveTheirNoiseAndItsInterval) {
+  const TimeErrorSeries series = series_of(sums(white_noise(5, 1030, 1e-9)), 0.5);
+  const Stability stability = stability_of(series);
+  for (const ClockCurve& curve : clock_curves()) {
+    std::int64_t m = 1;
+    for (const StabilityPoint& point : nonempty(stability.*curve.points)) {
+      if (curve.deviation == Deviation::kMtie) {
+        EXPECT_FALSE(point.certainty) << "a largest value";
+        continue;
+      }
+      ASSERT_TRUE(point.certainty) << curve.id << " " << point.tau_s;
+      // From m = 32 on the type before is kept: 1030 / 32 points are too few.
+      if (m <= 16) {
+        EXPECT_EQ(point.certainty->noise, NoiseType::kWhiteFm) << curve.id << " " << m;
+      }
+      const double degrees = degrees_of_freedom(series, curve.deviation, m, point.certainty->noise);
+      const Interval interval = deviation_interval(point.value, degrees);
+      EXPECT_DOUBLE_EQ(point.certainty->low, interval.low);
+      EXPECT_DOUBLE_EQ(point.certainty->high, interval.high);
+      EXPECT_EQ(point.certainty->reliable, degrees >= 3);
+      m *= 2;
+    }
+    if (curve.deviation == Deviation::kMtie) continue;
+    EXPECT_TRUE((stability.*curve.points).front().certainty->reliable);
+    EXPECT_FALSE((stability.*curve.points).back().certainty->reliable) << curve.id;
+  }
+  EXPECT_EQ(stability.series.pieces[0].x_s, series.pieces[0].x_s);
+}
+
+TEST(Stability, WhatTellsNoNoiseHasNoInterval) {
+  for (const StabilityPoint& point : nonempty(stability_of(series_of({0, 0, 1, 0})).adev)) {
+    EXPECT_FALSE(point.certainty) << "too few points";
+  }
+  const std::vector<double> constant(1000, 0.25);
+  for (const StabilityPoint& point : nonempty(stability_of(series_of(constant)).adev)) {
+    EXPECT_FALSE(point.certainty) << "a value of 0";
+  }
+  for (const StabilityPoint& point : nonempty(stability_curves(series_of(nist_series())).adev)) {
+    EXPECT_FALSE(point.certainty);
+  }
 }
 
 TEST(StabilityDeathTest, WhatIsNoNumberIsAProgrammingError) {

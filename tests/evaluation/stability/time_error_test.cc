@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+#include "tests/evaluation/stability/noises.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -17,14 +17,6 @@ using testing::SizeIs;
 
 TimeErrorSeries one_piece(std::vector<double> x_s, double interval_s = 1) {
   return {.interval_s = interval_s, .pieces = {{.start_s = 100, .x_s = std::move(x_s)}}};
-}
-
-std::vector<double> white_noise(std::uint32_t seed, std::size_t points, double sigma) {
-  boost::random::mt19937 random(seed);
-  boost::random::normal_distribution<double> normal(0, sigma);
-  std::vector<double> x(points);
-  for (double& value : x) value = normal(random);
-  return x;
 }
 
 TEST(TimeErrorSummary, IsThatOfTheHandCalculatedSeries) {
@@ -44,6 +36,30 @@ TEST(TimeErrorSummary, KeepsSmallNoiseOnALargeOffset) {
   for (std::size_t i = 0; i < x.size(); i += 2) x[i] += std::ldexp(1, -20);
   const TimeErrorSummary summary = time_error_of(one_piece(x));
   EXPECT_NEAR(summary.dynamic_te_ms, 1e3 * std::ldexp(1, -21), 1e-12);
+}
+
+TEST(TimeErrorSummary, PercentilesAreThoseOfAllMagnitudes) {
+  // The magnitudes 0 to 1000 us, in two pieces, with both signs.
+  TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0}, {.start_s = 5000}}};
+  for (int i = 1000; i >= 0; --i) {
+    series.pieces[i < 300 ? 0 : 1].x_s.push_back((i % 2 == 0 ? 1e-6 : -1e-6) * i);
+  }
+  const TimeErrorSummary summary = time_error_of(series);
+  EXPECT_NEAR(summary.p50_te_ms, 0.5, 1e-12);
+  EXPECT_NEAR(summary.p95_te_ms, 0.95, 1e-12);
+  EXPECT_NEAR(summary.p99_te_ms, 0.99, 1e-12);
+  EXPECT_NEAR(summary.p99_9_te_ms, 0.999, 1e-12);
+  EXPECT_NEAR(summary.dynamic_te_p2p_ms, 1 + 0.999, 1e-12);
+  EXPECT_EQ(time_error_of({}).p99_te_ms, 0);
+}
+
+TEST(ShareWithin, CountsAllPoints) {
+  TimeErrorSeries series = one_piece({1e-6, -2e-6, 3e-6});
+  series.pieces.push_back({.start_s = 200, .x_s = {-4e-6}});
+  EXPECT_EQ(share_within(series, 0.5e-6), 0);
+  EXPECT_EQ(share_within(series, 2e-6), 0.5) << "the limit itself is within";
+  EXPECT_EQ(share_within(series, 1), 1);
+  EXPECT_EQ(share_within({}, 1), std::nullopt);
 }
 
 TEST(FrequencyOffset, OfALineIsItsSlopeAndItsMeanStays) {
