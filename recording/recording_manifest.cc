@@ -255,7 +255,7 @@ RecordingManifest read_manifest(const std::string& folder) {
   if (!std::filesystem::is_directory(folder, error)) {
     throw RecordingFolderError(fmt::format("{}: there is no such folder", folder));
   }
-  if (!std::filesystem::is_regular_file(path, error)) {
+  if (!std::filesystem::exists(path, error)) {
     throw RecordingFolderError(fmt::format(
         "{}: is no recording, it has no manifest.json; `simbench record` makes one", folder));
   }

@@ -55,7 +55,9 @@ class HostileNames : public ProgramTest {
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(obeyed_in(result.out), "");
     EXPECT_EQ(obeyed_in(result.err), "");
-    if (!written.empty()) EXPECT_EQ(obeyed_in(content(written)), "");
+    if (!written.empty()) {
+      EXPECT_EQ(obeyed_in(content(written)), "");
+    }
     return result;
   }
 

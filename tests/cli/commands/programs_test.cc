@@ -17,7 +17,7 @@
 namespace simbench {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -34,13 +34,13 @@ class ProgramsCommand : public ProgramTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  void write(const std::string& name, const json& program) const {
-    file(name, json{{"host_sync", {{"program", program}}}}.dump());
+  void write(const std::string& name, const Json& program) const {
+    file(name, Json{{"host_sync", {{"program", program}}}}.dump());
   }
   // What the row of a command says of it.
   std::string said_of(const std::string& word) const {
-    write("one.json", {{"master", json::array({json::array({"/bin/true"})})},
-                       {"slave", json::array({json::array({word})})}});
+    write("one.json", {{"master", Json::array({Json::array({"/bin/true"})})},
+                       {"slave", Json::array({Json::array({word})})}});
     const ProgramResult result = clocks({"--program", "one=one.json"});
     EXPECT_EQ(result.status, 0) << "the other row goes on";
     EXPECT_THAT(result.out, HasSubstr("\nfree_running "));
@@ -56,11 +56,11 @@ TEST_F(ProgramsCommand, ThePythonExampleSynchronisesCameras) {
            "k4a", "--program", "cristian=" + example, "--program-log", "logs", "--set",
            "/timeline/frames=30", "--format", "json"});
   ASSERT_EQ(result.status, 0) << result.err;
-  const json rows = json::parse(result.out)["rows"];
+  const Json rows = Json::parse(result.out)["rows"];
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[1]["pipeline"], "cristian");
   EXPECT_EQ(rows[1]["host_sync"], "program python3");
-  EXPECT_EQ(rows[1]["notes"], json::array());
+  EXPECT_EQ(rows[1]["notes"], Json::array());
   EXPECT_LT(rows[1]["host_error_ms"]["median"].get<double>(), 1);
   EXPECT_TRUE(std::filesystem::exists(folder() / "logs/cristian/seed1/host1/0_python3.log"));
 }
