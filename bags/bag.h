@@ -7,7 +7,8 @@
 //
 // Whatever the bytes of a file are, a reader takes a bounded amount of memory (kMostBagMemory, less
 // than that for usual files), ends, and either throws BagError, because nothing could be read, or
-// goes on after the damage and states in BagFacts what was lost.
+// goes on after the damage and states in BagFacts what was lost. How many messages and inflated
+// bytes a file of its size may have is in bags/read_budget.h.
 //
 //   class Counter final : public BagSink {
 //    public:
@@ -92,6 +93,11 @@ struct BagFacts {
 // bag. Throws FileError if the file cannot be read.
 std::optional<BagFormat> bag_format(const std::string& path);
 std::string_view to_text(BagFormat format);
+// Whether the file as a whole is compressed by zstd, as rosbag2 can do; such a one is refused.
+// Throws FileError.
+bool is_compressed_whole(const std::string& path);
+// "is compressed as a whole (zstd); unpack it: zstd -d x.db3.zstd -o x.db3"
+std::string unpacking_text(const std::string& path);
 
 // `progress` counts bytes of the file; what it throws ends the reading, as what the sink throws.
 // Throws BagError.

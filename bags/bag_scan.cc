@@ -57,8 +57,7 @@ class Scanner final : public BagSink {
   // Sorts by time of arrival, once, after the last message.
   void conclude();
   std::vector<std::string> devices() const;
-  // Messages of a camera's topic that are no such messages.
-  std::uint64_t unreadable() const { return unreadable_; }
+  std::vector<std::string> notes() const;
 
  private:
   struct Known {
@@ -69,6 +68,7 @@ class Scanner final : public BagSink {
     std::map<std::string, std::size_t, std::less<>> tracks{};  // by frame id
     std::size_t last_track = 0;
     std::string last_frame_id{};
+    bool is_one = false;  // it has too many frame ids
   };
 
   void expect_header(const BagTopic& topic) const;
@@ -77,8 +77,11 @@ class Scanner final : public BagSink {
   void take_ros_metadata(const BagMessage& message, FieldBytes& fields, FrameTrack& track);
   void take_sdk_metadata(const BagMessage& message);
   void take_info(const BagMessage& message);
-  FrameTrack& track_of(std::uint32_t topic, std::string_view frame_id);
-  FrameTrack& sdk_track(const std::string& base);
+  // Null beyond the limit.
+  FrameTrack* track_of(std::uint32_t topic, std::string_view frame_id);
+  FrameTrack* new_track(std::uint32_t topic, std::string_view frame_id);
+  FrameTrack* take_as_one(Known& known);
+  FrameTrack* sdk_track(const std::string& base);
 
   const std::string& path_;
   const ScanOptions& options_;
@@ -88,7 +91,8 @@ class Scanner final : public BagSink {
   std::vector<FrameTrack> tracks_;
   std::map<std::string, std::size_t> sdk_tracks_;  // by base
   std::map<std::string, std::map<std::string, std::string>> info_;
-  std::uint64_t unreadable_ = 0;
+  std::uint64_t unreadable_ = 0;  // messages of a camera's topic that are no such messages
+  std::uint64_t beyond_ = 0;      // messages, for which there was no track
 };
 
 // Nothing for what is no such message. `fields` stand behind it then.
@@ -169,25 +173,67 @@ void Scanner::on_message(const BagMessage& message) {
   }
 }
 
-FrameTrack& Scanner::track_of(std::uint32_t topic, std::string_view frame_id) {
+FrameTrack* Scanner::track_of(std::uint32_t topic, std::string_view frame_id) {
   Known& known = known_[topic];
-  if (!known.tracks.empty() && known.last_frame_id == frame_id) return tracks_[known.last_track];
-  const auto found = known.tracks.find(frame_id);
-  if (found == known.tracks.end()) {
-    known.last_track = tracks_.size();
-    known.tracks.emplace(std::string(frame_id), tracks_.size());
-    tracks_.push_back({.topic = topic,
-                       .camera = known.camera,
-                       .topic_name = topics_[topic].topic.name,
-                       .frame_id = std::string(frame_id)});
-  } else {
-    known.last_track = found->second;
+  if (known.is_one || (!known.tracks.empty() && known.last_frame_id == frame_id)) {
+    return &tracks_[known.last_track];
   }
+  const auto found = known.tracks.find(frame_id);
+  if (found == known.tracks.end()) return new_track(topic, frame_id);
+  known.last_track = found->second;
   known.last_frame_id = std::string(frame_id);
-  return tracks_[known.last_track];
+  return &tracks_[known.last_track];
 }
 
-FrameTrack& Scanner::sdk_track(const std::string& base) {
+FrameTrack* Scanner::new_track(std::uint32_t topic, std::string_view frame_id) {
+  Known& known = known_[topic];
+  if (known.tracks.size() == kMostFrameIds) return take_as_one(known);
+  if (tracks_.size() == kMostTracks) return nullptr;
+  known.last_track = tracks_.size();
+  known.last_frame_id = std::string(frame_id);
+  known.tracks.emplace(known.last_frame_id, tracks_.size());
+  return &tracks_.emplace_back(FrameTrack{.topic = topic,
+                                          .camera = known.camera,
+                                          .topic_name = topics_[topic].topic.name,
+                                          .frame_id = known.last_frame_id});
+}
+
+// A frame id that changes with the messages is no camera's name.
+FrameTrack* Scanner::take_as_one(Known& known) {
+  known.is_one = true;
+  known.last_track = known.tracks.begin()->second;
+  std::vector<RawFrame>& frames = tracks_[known.last_track].frames;
+  for (const auto& [frame_id, number] : known.tracks) {
+    if (number == known.last_track) continue;
+    std::vector<RawFrame>& others = tracks_[number].frames;
+    frames.insert(frames.end(), others.begin(), others.end());
+    others = {};
+  }
+  return &tracks_[known.last_track];
+}
+
+std::vector<std::string> Scanner::notes() const {
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (!known_[i].is_one) continue;
+    notes.push_back(fmt::format(
+        "{}: {}: found more than {} frame ids; its messages are taken to be one camera's", path_,
+        printable_name(topics_[i].topic.name), kMostFrameIds));
+  }
+  if (unreadable_ > 0) {
+    notes.push_back(fmt::format("{}: {} of its cameras' topics left out: no such message", path_,
+                                counted(unreadable_, "message")));
+  }
+  if (beyond_ > 0) {
+    notes.push_back(
+        fmt::format("{}: {} left out: found more than {} topics and frame ids of cameras", path_,
+                    counted(beyond_, "message"), kMostTracks));
+  }
+  return notes;
+}
+
+FrameTrack* Scanner::sdk_track(const std::string& base) {
+  if (tracks_.size() == kMostTracks && !sdk_tracks_.contains(base)) return nullptr;
   const auto [found, is_new] = sdk_tracks_.try_emplace(base, tracks_.size());
   if (is_new) {
     FrameTrack& added = tracks_.emplace_back();
@@ -195,7 +241,7 @@ FrameTrack& Scanner::sdk_track(const std::string& base) {
     added.camera.base = base;
     added.topic_name = base + "/image/data";
   }
-  return tracks_[found->second];
+  return &tracks_[found->second];
 }
 
 // By log time; what a copy of a message said is left out.
@@ -240,7 +286,12 @@ void Scanner::take_headed(const BagMessage& message) {
   }
   const MessageHeader& header = *read;
   const bool sdk = camera.kind == TopicKind::kSdkImage;
-  FrameTrack& track = sdk ? sdk_track(camera.base) : track_of(message.topic, header.frame);
+  FrameTrack* found = sdk ? sdk_track(camera.base) : track_of(message.topic, header.frame);
+  if (found == nullptr) {
+    ++beyond_;
+    return;
+  }
+  FrameTrack& track = *found;
   const std::int64_t log_ns = message.log_time.count();
   // Metadata may have come first.
   const bool begun = sdk && !track.frames.empty() && track.frames.back().log_ns == log_ns &&
@@ -291,7 +342,12 @@ void Scanner::take_sdk_metadata(const BagMessage& message) {
     ++unreadable_;
     return;
   }
-  FrameTrack& track = sdk_track(known_[message.topic].camera.base);
+  FrameTrack* found = sdk_track(known_[message.topic].camera.base);
+  if (found == nullptr) {
+    ++beyond_;
+    return;
+  }
+  FrameTrack& track = *found;
   const std::int64_t log_ns = message.log_time.count();
   if (track.frames.empty() || track.frames.back().log_ns != log_ns) {
     track.frames.push_back({.log_ns = log_ns});
@@ -370,15 +426,13 @@ BagScan scan_bag(const std::string& path, const std::string& name, const ScanOpt
   Scanner scanner(path, options);
   scan.facts = read_bag(path, scanner, progress);
   scanner.conclude();
+  const std::vector<std::string> notes = scanner.notes();
   scan.topics = std::move(scanner.topics());
   scan.devices = scanner.devices();
   scan.notes = scan.facts.notes;
   check_topics(path, options, scan);
   note_order(path, scan);
-  if (scanner.unreadable() > 0) {
-    scan.notes.push_back(fmt::format("{}: {} of its cameras' topics left out: no such message",
-                                     path, counted(scanner.unreadable(), "message")));
-  }
+  scan.notes.insert(scan.notes.end(), notes.begin(), notes.end());
   make_streams(scanner.tracks(),
                {.path = path, .name = name, .all_chosen = !options.topics.empty()}, scan);
   return scan;

@@ -1,12 +1,15 @@
 #include "bags/mcap_records.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <boost/crc.hpp>
 #include <vector>
 
+#include "bags/checksum.h"
 #include "bags/fields.h"
 #include "bags/message_types.h"
+#include "recording/text_fields.h"
 
 namespace simbench::bags {
 namespace {
@@ -49,21 +52,35 @@ std::string publisher_in(std::string_view metadata) {
   return {};
 }
 
-bool checksum_holds(FileBytes& file, std::uint64_t from, std::uint64_t to, std::uint32_t expected) {
-  boost::crc_32_type crc;
-  std::vector<char> buffer(std::size_t{64} << 10);
-  file.seek(from);
-  while (from < to) {
-    const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(to - from, buffer.size()));
-    const std::size_t size = file.read(buffer.data(), most);
-    if (size == 0) return false;
-    crc.process_bytes(buffer.data(), size);
-    from += size;
-  }
-  return crc.checksum() == expected;
+// The checksum of all before the record DataEnd, where that stands before the summary.
+void read_data_end(FileBytes& file, std::uint64_t next, McapSummary& summary) {
+  constexpr std::uint64_t kSize = kMcapRecordHead + 4;
+  if (next < kMcapMagicSize + kSize) return;
+  std::array<char, kSize> bytes{};
+  file.seek(next - kSize);
+  if (!file.read_exactly(bytes.data(), bytes.size())) return;
+  FieldBytes fields({bytes.data(), bytes.size()}, Encoding::kRos1);
+  if (fields.u8() != static_cast<std::uint8_t>(McapOp::kDataEnd) || fields.u64() != 4) return;
+  summary.data_crc = fields.u32();
+  if (summary.data_crc != 0) summary.checked_end = next - kSize;
 }
 
 }  // namespace
+
+bool checksum_holds(ByteStream& bytes, std::uint64_t count, std::uint32_t expected,
+                    const std::function<void()>& on_step) {
+  Checksum sum;
+  std::vector<char> buffer(std::size_t{64} << 10);
+  while (count > 0) {
+    const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer.size()));
+    const std::size_t size = bytes.read(buffer.data(), most);
+    if (size == 0) return false;
+    sum.add({buffer.data(), size});
+    if (on_step) on_step();
+    count -= size;
+  }
+  return sum.value() == expected;
+}
 
 bool read_mcap_record(ByteStream& from, McapRecord& record, bool* ended) {
   std::array<char, kMcapRecordHead> head{};
@@ -89,7 +106,7 @@ std::optional<McapChunkHead> read_mcap_chunk_head(FileBytes& file, std::uint64_t
   fields.u64();
   McapChunkHead head;
   head.plain_size = fields.u64();
-  fields.u32();
+  head.plain_crc = fields.u32();
   const std::string_view name = fields.text();
   head.records_size = fields.u64();
   if (!fields.ok() || name.size() > kMostCompressionName) return std::nullopt;
@@ -105,43 +122,57 @@ bool McapChannels::has_room(std::size_t size) {
   return true;
 }
 
-bool McapChannels::take(const McapRecord& record, ByteStream& content) {
+McapChannels::Taken McapChannels::take(const McapRecord& record, ByteStream& content, bool weak) {
   const std::string bytes = record_start(content, record.length);
-  return record.op == McapOp::kSchema ? take_schema(bytes) : take_channel(bytes);
+  return record.op == McapOp::kSchema ? take_schema(bytes) : take_channel(bytes, weak);
 }
 
-bool McapChannels::take_schema(std::string_view bytes) {
+McapChannels::Taken McapChannels::take_schema(std::string_view bytes) {
   FieldBytes fields(bytes, Encoding::kRos1);
   const std::uint16_t id = fields.u16();
   const std::string_view name = fields.text();
   const std::string_view encoding = fields.text();
-  if (!fields.ok()) return false;
-  if (schemas_.contains(id)) return true;
+  if (!fields.ok()) return Taken::kNonsense;
+  if (schemas_.contains(id)) return Taken::kYes;
   const bool is_text = encoding == "ros1msg" || encoding == "ros2msg";
   const std::string_view definition =
       is_text ? fields.text().substr(0, kMostDefinition) : std::string_view();
-  if (!has_room(name.size() + definition.size())) return false;
+  if (!has_room(name.size() + definition.size())) return Taken::kNonsense;
   schemas_.emplace(id, Schema{ros1_type(std::string(name)), std::string(definition)});
-  return true;
+  return Taken::kYes;
 }
 
-bool McapChannels::take_channel(std::string_view bytes) {
+McapChannels::Taken McapChannels::take_channel(std::string_view bytes, bool weak) {
   FieldBytes fields(bytes, Encoding::kRos1);
   const std::uint16_t id = fields.u16();
   Channel channel;
   channel.schema = fields.u16();
   const std::string_view topic = fields.text();
   const std::string_view encoding = fields.text();
-  if (!fields.ok()) return false;
-  if (channels_.contains(id)) return true;
+  if (!fields.ok()) return Taken::kNonsense;
+  if (const auto known = channels_.find(id); known != channels_.end()) {
+    Channel& other = known->second;
+    const bool same = other.topic.name == topic && other.topic.encoding == encoding_of(encoding) &&
+                      other.schema == channel.schema;
+    if (same) other.weak = other.weak && weak;
+    if (same || weak || other.contradicted) return Taken::kYes;
+    if (!other.weak || other.number != kNoTopic) {
+      other.contradicted = true;
+      contradiction_ = fmt::format("channel {} stands for {} and for {}", id,
+                                   printable_name(other.topic.name), printable_name(topic));
+      return Taken::kContradiction;
+    }
+    channels_.erase(known);
+  }
   const std::string publisher = publisher_in(fields.text());
-  if (!has_room(topic.size() + publisher.size())) return false;
+  if (!has_room(topic.size() + publisher.size())) return Taken::kNonsense;
+  channel.weak = weak;
   channel.topic = {.name = std::string(topic),
                    .type = {},
                    .publisher = publisher,
                    .encoding = encoding_of(encoding)};
   channels_.emplace(id, std::move(channel));
-  return true;
+  return Taken::kYes;
 }
 
 McapChannels::Channel* McapChannels::find(std::uint16_t id) {
@@ -183,12 +214,14 @@ McapSummary read_mcap_summary(FileBytes& file, McapChannels& channels) {
   const std::uint64_t start = fields.u64();
   fields.u64();
   const std::uint32_t crc = fields.u32();
+  read_data_end(file, start == 0 ? footer : start, summary);
   if (start == 0) return summary;
-  if (start < kMcapMagicSize || start > footer ||
-      (crc != 0 && !checksum_holds(file, start, file.size() - kMcapMagicSize - 4, crc))) {
-    summary.damaged = true;
-    return summary;
+  summary.damaged = start < kMcapMagicSize || start > footer;
+  if (!summary.damaged && crc != 0) {
+    file.seek(start);
+    summary.damaged = !checksum_holds(file, file.size() - kMcapMagicSize - 4 - start, crc);
   }
+  if (summary.damaged) return summary;
   file.seek(start);
   McapRecord record;
   while (file.position() < footer && read_mcap_record(file, record)) {
@@ -199,7 +232,7 @@ McapSummary read_mcap_summary(FileBytes& file, McapChannels& channels) {
     }
     if (record.op == McapOp::kSchema || record.op == McapOp::kChannel) {
       LimitedBytes part(file, record.length);
-      channels.take(record, part);
+      channels.take(record, part, true);
     } else if (record.op == McapOp::kStatistics && record.length >= 8) {
       std::array<char, 8> count{};
       if (file.read_exactly(count.data(), count.size())) {

@@ -60,15 +60,15 @@ constexpr std::array<std::string_view, 3> kFoxgloveOfRos = {
     "foxglove_msgs/CompressedImage", "foxglove_msgs/CompressedVideo", "foxglove_msgs/RawImage"};
 
 template <std::size_t size>
-bool is_one_of(const std::array<std::string_view, size>& names, std::string_view name) {
+bool has_name(const std::array<std::string_view, size>& names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
 
 bool is_known(const BagTopic& topic) {
   const std::string_view type = topic.type;
-  if (is_one_of(kHeaded, type)) return true;
+  if (has_name(kHeaded, type)) return true;
   if (type.starts_with("geometry_msgs/") && type.ends_with("Stamped")) return true;
-  return topic.encoding == Encoding::kCdr && is_one_of(kFoxgloveOfRos, topic.type);
+  return topic.encoding == Encoding::kCdr && has_name(kFoxgloveOfRos, topic.type);
 }
 
 std::string_view next_word(std::string_view& line) {

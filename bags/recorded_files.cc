@@ -22,17 +22,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTopicsShown = 30;
 
-std::vector<std::string> files_of(const std::string& path) {
-  return fs::is_directory(path) ? rosbag2_files(path) : std::vector<std::string>{path};
-}
-
-// How many messages of a topic stand in the files so far.
-std::uint64_t messages_of(const BagScan& scan, const std::string& topic) {
-  std::uint64_t messages = 0;
-  for (const TopicScan& known : scan.topics) {
-    if (known.topic.name == topic) messages += known.messages + known.copies;
-  }
-  return messages;
+std::vector<std::string> files_of(const std::string& path,
+                                  std::vector<std::string>* notes = nullptr) {
+  return fs::is_directory(path) ? rosbag2_files(path, notes) : std::vector<std::string>{path};
 }
 
 // By arrival, whatever the order of the files was.
@@ -64,8 +56,12 @@ void append(RecordedStream& stream, const RecordedStream& next, std::uint64_t me
 
 // The part of a recording that stands in its next file.
 void append(BagScan& scan, BagScan next) {
+  std::map<std::string, std::uint64_t> messages;  // of each topic, in the files so far
+  for (const TopicScan& topic : scan.topics) {
+    messages[topic.topic.name] += topic.messages + topic.copies;
+  }
   for (RecordedStream& stream : next.streams) {
-    const std::uint64_t before = messages_of(scan, stream.origin.topic);
+    const std::uint64_t before = messages[stream.origin.topic];
     const auto known = std::ranges::find_if(scan.streams, [&stream](const RecordedStream& s) {
       return s.camera == stream.camera && s.stream == stream.stream;
     });
@@ -78,14 +74,16 @@ void append(BagScan& scan, BagScan next) {
     }
     scan.streams.push_back(std::move(stream));
   }
+  std::map<std::pair<std::string, std::string>, std::size_t> places;
+  for (std::size_t i = 0; i < scan.topics.size(); ++i) {
+    places.emplace(std::pair(scan.topics[i].topic.name, scan.topics[i].topic.publisher), i);
+  }
   for (TopicScan& topic : next.topics) {
-    const auto known = std::ranges::find_if(scan.topics, [&topic](const TopicScan& t) {
-      return t.topic.name == topic.topic.name && t.topic.publisher == topic.topic.publisher;
-    });
-    if (known == scan.topics.end()) {
+    const auto known = places.find({topic.topic.name, topic.topic.publisher});
+    if (known == places.end()) {
       scan.topics.push_back(std::move(topic));
     } else {
-      known->append(topic);
+      scan.topics[known->second].append(topic);
     }
   }
   scan.notes.insert(scan.notes.end(), next.notes.begin(), next.notes.end());
@@ -117,8 +115,10 @@ void append(BagScan& scan, BagScan next) {
 
 bool is_bag(const std::string& path) {
   if (fs::is_directory(path)) return is_rosbag2_folder(path);
+  // A pipe may be a CSV; a bag is read from several places.
+  if (fs::exists(path) && !fs::is_regular_file(path)) return false;
   try {
-    return bag_format(path).has_value();
+    return bag_format(path).has_value() || is_compressed_whole(path);
   } catch (const FileError& error) {
     throw BagError(path + ": cannot be read: " + error.what());
   }
@@ -152,7 +152,8 @@ BagScan scan_recording(const std::string& path, const std::string& name, const S
   std::optional<BagScan> all;
   const std::uint64_t total = recording_bytes(path);
   std::uint64_t before = 0;
-  const std::vector<std::string> files = files_of(path);
+  std::vector<std::string> notes;
+  const std::vector<std::string> files = files_of(path, &notes);
   for (const std::string& file : files) {
     BagScan scan = scan_bag(file, name, options, [&](std::uint64_t done, std::uint64_t) {
       if (progress) progress(before + done, total);
@@ -165,6 +166,7 @@ BagScan scan_recording(const std::string& path, const std::string& name, const S
     }
   }
   if (!all) throw BagError(path + ": found no bag in this folder");
+  all->notes.insert(all->notes.begin(), notes.begin(), notes.end());
   if (files.size() > 1) {
     for (RecordedStream& stream : all->streams) stream.origin.file = path;
   }

@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <vector>
 
 #include "bags/bag.h"
 #include "bags/damage_notes.h"
 #include "bags/message_types.h"
+#include "bags/read_budget.h"
 #include "bags/rosbag_records.h"
 #include "recording/byte_stream.h"
 #include "recording/text_fields.h"
@@ -34,14 +36,23 @@ struct IndexedChunk {
 class RosbagReading {
  public:
   RosbagReading(const std::string& path, BagSink& sink, const ReadProgress& progress)
-      : path_(path), file_(path), sink_(sink), progress_(progress), notes_(path) {
+      : path_(path),
+        file_(path),
+        sink_(sink),
+        progress_(progress),
+        notes_(path),
+        budget_(file_.size()) {
     facts_.format = BagFormat::kRosbag;
   }
 
   BagFacts read() {
     read_bag_header();
     read_index();
-    read_records();
+    try {
+      read_records();
+    } catch (const BudgetSpent& spent) {
+      notes_.add(spent.what());
+    }
     finish();
     return std::move(facts_);
   }
@@ -61,6 +72,8 @@ class RosbagReading {
   void read_records();
   std::uint64_t read_record_at(std::uint64_t position);
   std::uint64_t read_chunk(std::uint64_t position, const RecordHeader& record);
+  bool read_inflated(std::uint64_t position, const RecordHeader& record, bool lz4,
+                     ByteStream& bytes);
   bool read_chunk_content(std::uint64_t position, ByteStream& stream);
   bool read_message(const RecordHeader& record, ByteStream& stream);
   std::uint64_t next_chunk_after(std::uint64_t position);
@@ -79,6 +92,7 @@ class RosbagReading {
   const ReadProgress& progress_;
   BagFacts facts_;
   DamageNotes notes_;
+  ReadBudget budget_;
   std::map<std::uint32_t, Connection> connections_;
   std::vector<IndexedChunk> chunks_;  // by position
   std::uint64_t index_at_ = 0;        // 0: none
@@ -245,9 +259,7 @@ std::uint64_t RosbagReading::read_chunk(std::uint64_t position, const RecordHead
     if (compression == "none") {
       whole = read_chunk_content(position, bytes);
     } else if (compression == "lz4" || compression == "bz2") {
-      const auto plain =
-          inflated(compression == "lz4" ? Compression::kLz4 : Compression::kBzip2, bytes);
-      whole = read_chunk_content(position, *plain);
+      whole = read_inflated(position, record, compression == "lz4", bytes);
     } else {
       note(position, fmt::format("a chunk compressed with {}, allowed: none, lz4, bz2",
                                  quoted_bytes(compression)));
@@ -260,6 +272,22 @@ std::uint64_t RosbagReading::read_chunk(std::uint64_t position, const RecordHead
   if (end < declared_end) note(position, "a chunk that is cut off, or whose size is wrong");
   // The size may be what is wrong: without an index, looks for the next chunk inside, too.
   return index_at_ > 0 ? end : next_chunk_after(data_at);
+}
+
+// A chunk states its plain size.
+bool RosbagReading::read_inflated(std::uint64_t position, const RecordHeader& record, bool lz4,
+                                  ByteStream& bytes) {
+  constexpr std::uint64_t kBzip2Weight = 8;
+  const auto stream = inflated(lz4 ? Compression::kLz4 : Compression::kBzip2, bytes);
+  const std::uint64_t declared =
+      u32_field(record.fields(), "size").value_or(std::numeric_limits<std::uint32_t>::max());
+  BudgetedBytes plain(*stream, declared, budget_, lz4 ? 1 : kBzip2Weight);
+  if (!read_chunk_content(position, plain)) return false;
+  if (plain.left() > 0 || !plain.has_more()) return true;
+  note(position, fmt::format("a chunk becomes more than the {} bytes that it declares; the rest of "
+                             "it is lost",
+                             declared));
+  return false;
 }
 
 // False if a part makes no sense; what came before was passed on.
@@ -283,6 +311,7 @@ bool RosbagReading::read_message(const RecordHeader& record, ByteStream& stream)
   const auto time = time_field(record.fields(), "time");
   const auto known = number ? connections_.find(*number) : connections_.end();
   if (!time || known == connections_.end()) return false;
+  budget_.take_message();
   const std::size_t asked = known->second.head;
   const std::size_t wanted =
       asked == kLeaveOut ? 0 : std::min<std::size_t>({asked, kMostHead, record.data_size()});

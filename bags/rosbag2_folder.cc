@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <tuple>
@@ -64,7 +65,7 @@ auto split_order(const fs::path& path) {
                     path.filename().string());
 }
 
-bool is_compressed_whole(const fs::path& path) { return path.extension() == ".zstd"; }
+bool is_named_compressed(const fs::path& path) { return path.extension() == ".zstd"; }
 
 std::vector<fs::path> named_as_bags(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -72,7 +73,7 @@ std::vector<fs::path> named_as_bags(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const fs::path& path = entry->path();
-    const fs::path name = is_compressed_whole(path) ? path.stem() : path.filename();
+    const fs::path name = is_named_compressed(path) ? path.stem() : path.filename();
     if (name.extension() == ".db3" || name.extension() == ".mcap") files.push_back(path);
   }
   if (error) throw BagError(folder.string() + ": cannot be read: " + error.message());
@@ -88,11 +89,14 @@ bool is_rosbag2_folder(const std::string& folder) {
   return fs::exists(root / "metadata.yaml") || !named_as_bags(root).empty();
 }
 
-std::vector<std::string> rosbag2_files(const std::string& folder) {
+std::vector<std::string> rosbag2_files(const std::string& folder, std::vector<std::string>* notes) {
   const fs::path root(folder);
   std::vector<fs::path> files;
   const fs::path metadata = root / "metadata.yaml";
   if (fs::exists(metadata)) {
+    if (!fs::is_regular_file(metadata)) {
+      throw BagError(metadata.string() + ": found a pipe, a device or a folder, allowed: a file");
+    }
     try {
       // Bags lie in the folder itself, whatever the path in the list (old ones name the folder).
       for (const std::string& path :
@@ -110,17 +114,24 @@ std::vector<std::string> rosbag2_files(const std::string& folder) {
     throw BagError(folder + ": found no bag, allowed: a folder with .db3 or .mcap files");
   }
   std::vector<std::string> names;
-  names.reserve(files.size());
+  std::set<std::string> seen;
   for (fs::path& file : files) {
-    if (is_compressed_whole(file)) {
+    if (is_named_compressed(file)) {
       // Whoever has unpacked it need not touch metadata.yaml.
       if (!fs::exists(file.parent_path() / file.stem())) {
-        throw BagError(file.string() + ": is compressed as a whole; unpack it: zstd -d " +
-                       file.string() + " -o " + (file.parent_path() / file.stem()).string());
+        throw BagError(file.string() + ": " + unpacking_text(file.string()));
       }
       file.replace_extension();
     }
-    names.push_back(file.string());
+    std::error_code none;
+    const fs::path target = fs::weakly_canonical(file, none);
+    if (seen.insert(none ? file.string() : target.string()).second) {
+      names.push_back(file.string());
+    } else if (notes != nullptr) {
+      notes->push_back(file.string() +
+                       ": stands twice among the files of the recording; it is "
+                       "read once");
+    }
   }
   return names;
 }

@@ -16,6 +16,8 @@ bool is_rosbag2_folder(const std::string& folder);
 
 // In the order of metadata.yaml; without one, of the numbers in their names. Files that
 // metadata.yaml names and that are missing are returned, too: reading them says so.
-std::vector<std::string> rosbag2_files(const std::string& folder);
+// A file that it names twice is returned once, with a note.
+std::vector<std::string> rosbag2_files(const std::string& folder,
+                                       std::vector<std::string>* notes = nullptr);
 
 }  // namespace simbench::bags

@@ -4,6 +4,11 @@
 // reads by time of arrival, which is the same order within a topic. Ids follow the file, need no
 // index, and reading goes on behind pages that are damaged. Only the head of each message is read
 // (sqlite3_blob_read); SQLite does not visit the pages behind it.
+//
+// Nothing beside the file is changed. What a killed recorder left in a write-ahead log is read
+// where it lies: with an exclusive lock SQLite keeps the log's index in memory, the VFS "unix-none"
+// takes no lock in truth, and without a checkpoint at the end the log stays. Source:
+// sqlite.org/wal.html section 6 (use without shared memory), sqlite.org/uri.html.
 #include <sqlite3.h>
 #include <zstd.h>
 
@@ -24,6 +29,7 @@
 #include "bags/damage_notes.h"
 #include "bags/fields.h"
 #include "bags/message_types.h"
+#include "bags/read_budget.h"
 #include "recording/byte_stream.h"
 #include "scenarios/input_file.h"
 
@@ -50,7 +56,7 @@ using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
 using Blob = std::unique_ptr<sqlite3_blob, CloseBlob>;
 
 // SQLite opens URIs; what has a meaning in them is written as %XX.
-std::string uri_of(const std::string& path) {
+std::string uri_of(const std::string& path, bool with_log) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string uri = "file:";
   for (const char letter : std::filesystem::absolute(path).string()) {
@@ -61,7 +67,7 @@ std::string uri_of(const std::string& path) {
       uri += letter;
     }
   }
-  return uri + "?mode=ro&immutable=1";
+  return uri + (with_log ? "?mode=ro&vfs=unix-none" : "?mode=ro&immutable=1");
 }
 
 // What the header says of the whole: more than there is means that the file is cut off.
@@ -115,7 +121,8 @@ class SqliteBagReader {
         sink_(sink),
         progress_(progress),
         notes_(path),
-        size_(InputFile(path, Pipes::kRefused).size()) {}
+        size_(InputFile(path, Pipes::kRefused).size()),
+        budget_(size_) {}
 
   BagFacts read();
 
@@ -128,6 +135,8 @@ class SqliteBagReader {
   enum class Step : std::uint8_t { kEnd, kDamage };
 
   void open();
+  void open_database();
+  std::uint64_t bytes_beside(const char* suffix) const;
   void note_leftovers();
   void expect_tables();
   void read_definitions();
@@ -152,6 +161,7 @@ class SqliteBagReader {
   const ReadProgress& progress_;
   DamageNotes notes_;
   std::uint64_t size_;
+  ReadBudget budget_;
   Database database_{};
   Statement first_{};
   Blob blob_{};
@@ -159,6 +169,8 @@ class SqliteBagReader {
   std::map<std::int64_t, Topic> topics_{};
   std::map<std::string, std::string> definitions_{};  // by type
   bool has_definitions_ = false;
+  std::string target_{};  // the file itself, where path_ is a link
+  bool has_log_ = false;  // a write-ahead log that is read
   std::vector<char> head_{};
   std::int64_t last_ = std::numeric_limits<std::int64_t>::min();
   std::int64_t most_id_ = 0;
@@ -171,16 +183,37 @@ class SqliteBagReader {
 
 void SqliteBagReader::refuse(const std::string& what) const { throw BagError(path_ + ": " + what); }
 
+// Bytes beside the file that it lies in, of which a link may be elsewhere.
+std::uint64_t SqliteBagReader::bytes_beside(const char* suffix) const {
+  std::error_code none;
+  const std::uint64_t size = std::filesystem::file_size(target_ + suffix, none);
+  return none ? 0 : size;
+}
+
 void SqliteBagReader::open() {
+  std::error_code none;
+  const std::filesystem::path target = std::filesystem::canonical(path_, none);
+  target_ = none ? path_ : target.string();
+  has_log_ = bytes_beside("-wal") > 0;
+  open_database();
+  if (!has_log_) return;
+  sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  const char* first_read = "PRAGMA locking_mode=EXCLUSIVE; SELECT count(*) FROM sqlite_schema;";
+  if (sqlite3_exec(database_.get(), first_read, nullptr, nullptr, nullptr) == SQLITE_OK) return;
+  has_log_ = false;
+  open_database();
+}
+
+void SqliteBagReader::open_database() {
   sqlite3* opened = nullptr;
   const int result = sqlite3_open_v2(
-      uri_of(path_).c_str(), &opened,
+      uri_of(path_, has_log_).c_str(), &opened,
       SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE,
       nullptr);
   database_.reset(opened);
   if (result != SQLITE_OK) refuse(std::string("SQLite cannot open it: ") + sqlite3_errstr(result));
   const std::uint64_t stated = stated_size(path_);
-  cut_ = stated > size_;
+  cut_ = stated > size_ && !has_log_;
   if (cut_) {
     notes_.add("the file is cut off: its header states " + std::to_string(stated) +
                " bytes, found " + std::to_string(size_));
@@ -201,13 +234,15 @@ void SqliteBagReader::open() {
 }
 
 void SqliteBagReader::note_leftovers() {
-  for (const char* suffix : {"-wal", "-journal"}) {
-    std::error_code none;
-    const std::uint64_t size = std::filesystem::file_size(path_ + suffix, none);
-    if (none || size == 0) continue;
-    notes_.add("its recorder did not close it: what is in " + path_ + suffix + " (" +
-               std::to_string(size) + " bytes) was not read; `sqlite3 FILE .tables` on a copy of " +
-               "both files takes it in");
+  for (const std::string suffix : {"-wal", "-journal"}) {
+    const std::uint64_t size = bytes_beside(suffix.c_str());
+    if (size == 0) continue;
+    const std::string what = "its recorder did not close it: what is in " + target_ + suffix +
+                             " (" + std::to_string(size) + " bytes) was ";
+    notes_.add(what +
+               (has_log_ && suffix == "-wal"
+                    ? "read too"
+                    : "not read; `sqlite3 FILE .tables` on a copy of both files takes it in"));
     facts_.indexed = false;
   }
 }
@@ -336,6 +371,7 @@ SqliteBagReader::Step SqliteBagReader::read_from(std::int64_t id) {
 }
 
 void SqliteBagReader::read_row(sqlite3_stmt* row) {
+  budget_.take_message();
   const auto topic = topics_.find(sqlite3_column_int64(row, 1));
   if (topic == topics_.end()) {
     ++lost_;
@@ -461,7 +497,11 @@ BagFacts SqliteBagReader::read() {
   expect_tables();
   read_definitions();
   read_topics();
-  read_messages();
+  try {
+    read_messages();
+  } catch (const BudgetSpent& spent) {
+    notes_.add(spent.what());
+  }
   conclude();
   if (facts_.messages == 0 && topics_.empty() && damaged_) throw BagError(facts_.notes.front());
   return std::move(facts_);

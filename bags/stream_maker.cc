@@ -118,7 +118,8 @@ void StreamMaker::leave_out_copies(Tracks& tracks) {
   std::map<std::string, std::tuple<int, std::uint32_t, std::string>> best;  // rank, topic; by base
   std::set<std::string> with_images;
   for (const FrameTrack& track : tracks) {
-    if (!is_secondary(track)) with_images.insert("/" + camera_of(track.camera).camera);
+    if (!is_secondary(track))
+      with_images.insert(std::string("/").append(camera_of(track.camera).camera));
     if (is_derived(track.camera.base)) continue;
     const auto candidate = std::tuple(track.camera.rank, track.topic, track.topic_name);
     const auto [found, is_new] = best.try_emplace(track.camera.base, candidate);

@@ -232,6 +232,7 @@ std::size_t FileBytes::read(char* to, std::size_t most) {
   if (most == 0) return 0;
   if (buffered() == 0 && most >= buffer_.size()) {
     const std::size_t size = file_.read(to, most);
+    begin_ = end_ = 0;
     position_ += size;
     return size;
   }
@@ -259,6 +260,13 @@ std::uint64_t FileBytes::skip(std::uint64_t count) {
 }
 
 void FileBytes::seek(std::uint64_t position) {
+  // What is at hand is not read again.
+  const std::uint64_t first = position_ - begin_;
+  if (position >= first && position - first < end_) {
+    begin_ = static_cast<std::size_t>(position - first);
+    position_ = position;
+    return;
+  }
   file_.seek(position);
   begin_ = end_ = 0;
   position_ = position;

@@ -134,6 +134,33 @@ TEST(BagScanTest, TwoCamerasOnATopicAreTwo) {
   EXPECT_THAT(scan.notes, Contains(HasSubstr("several cameras write this topic")));
 }
 
+TEST(BagScanTest, FrameIdsThatCountAreNoCameras) {
+  RosbagWriter writer(Chunks::kLz4);
+  const auto topic = writer.add_topic("/cam/image_raw", "sensor_msgs/Image");
+  for (int i = 0; i < 300; ++i) {
+    writer.add_message(topic, stamp_of(i), image(i, "frame" + std::to_string(i), 0));
+  }
+  const BagScan scan = scanned(writer);
+  ASSERT_EQ(scan.streams.size(), 1U);
+  ASSERT_EQ(scan.streams[0].frames.size(), 300U);
+  for (std::size_t i = 0; i < 300; ++i) EXPECT_EQ(scan.streams[0].origin.messages[i], i);
+  ASSERT_EQ(scan.notes.size(), 1U);
+  EXPECT_THAT(scan.notes[0], HasSubstr("/cam/image_raw: found more than 64 frame ids"));
+}
+
+TEST(BagScanTest, TopicsOfCamerasHaveALimit) {
+  McapWriter mcap({});
+  for (int i = 0; i < 5000; ++i) {
+    const std::string name = "/cam" + std::to_string(i) + "/image_raw";
+    const std::uint16_t id = mcap.channel(name, "sensor_msgs/msg/Image", "cdr");
+    mcap.message(id, static_cast<std::uint64_t>(i), cdr_header(1, 2, "cam"));
+  }
+  const BagScan scan = scan_bag(MemoryFile(mcap.close()).path(), "rig", {});
+  EXPECT_EQ(scan.streams.size(), kMostTracks);
+  EXPECT_THAT(scan.notes,
+              Contains(HasSubstr("904 messages left out: found more than 4096 topics")));
+}
+
 TEST(BagScanTest, APublisherThatWasRestartedIsOne) {
   RosbagWriter writer(Chunks::kNone);
   const auto first = writer.add_topic("/cam/image_raw", "sensor_msgs/Image", "/a");

@@ -106,9 +106,10 @@ void McapWriter::end_chunk() {
   if (chunk_.empty()) return;
   const std::string records = deflated(options_.compression, chunk_);
   const std::uint64_t start = taken_ + finished_.size();
-  finished_ += mcap_record(6, bytes_of(0, 8) + bytes_of(1, 8) + bytes_of(chunk_.size(), 8) +
-                                  bytes_of(crc_of(chunk_), 4) + length_and(options_.compression) +
-                                  bytes_of(records.size(), 8) + records);
+  finished_ +=
+      mcap_record(6, bytes_of(0, 8) + bytes_of(1, 8) + bytes_of(chunk_.size(), 8) +
+                         bytes_of(options_.checksums ? crc_of(chunk_) : 0, 4) +
+                         length_and(options_.compression) + bytes_of(records.size(), 8) + records);
   chunk_indexes_ +=
       mcap_record(8, bytes_of(0, 8) + bytes_of(1, 8) + bytes_of(start, 8) +
                          bytes_of(taken_ + finished_.size() - start, 8) + bytes_of(0, 4) +
@@ -125,7 +126,7 @@ std::string McapWriter::take_finished() {
 
 std::string McapWriter::close() {
   end_chunk();
-  finished_ += mcap_record(15, bytes_of(0, 4));
+  finished_ += mcap_record(15, bytes_of(options_.data_checksum ? crc_of(finished_) : 0, 4));
   const std::uint64_t start = taken_ + finished_.size();
   std::string summary;
   if (options_.summary) {

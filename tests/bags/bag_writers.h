@@ -35,6 +35,8 @@ struct McapOptions {
   std::string compression{};
   std::size_t chunk_bytes = 0;  // 0: without chunks
   bool summary = true;
+  bool checksums = true;       // of chunks
+  bool data_checksum = false;  // of all before DataEnd; only if nothing is taken out before
 };
 
 class McapWriter {

@@ -185,7 +185,7 @@ TEST(Mcap, ADamagedChunkCostsItselfAlone) {
 TEST(Mcap, AWrongLengthIsPassedByTheNextRecord) {
   const ScratchFolder folder;
   for (const std::size_t chunk : {0U, 100'000U}) {
-    McapWriter mcap({.chunk_bytes = chunk});
+    McapWriter mcap({.chunk_bytes = chunk, .checksums = false});
     const std::uint16_t id = mcap.channel("/a", "t", "cdr");
     for (std::uint64_t i = 0; i < 10; ++i) mcap.message(id, i, std::string(40, 'x'));
     std::string file = mcap.close();
@@ -198,6 +198,107 @@ TEST(Mcap, AWrongLengthIsPassedByTheNextRecord) {
     EXPECT_EQ(facts.lost_messages, 1U) << chunk;
     EXPECT_EQ(facts.lost_bytes, 9U + 22U + 40U) << chunk;
   }
+}
+
+// A changed stamp cannot be told from a right one, so the chunk is not believed.
+TEST(Mcap, AChunkWithAnotherChecksumIsLeftOut) {
+  const ScratchFolder folder;
+  for (const char* compression : {"", "lz4", "zstd"}) {
+    McapWriter mcap({.compression = compression, .chunk_bytes = 1 << 20});
+    const std::uint16_t left = mcap.channel("/left", "t", "cdr");
+    const std::uint16_t right = mcap.channel("/right", "t", "cdr");
+    std::string file;
+    std::size_t second = 0;
+    std::mt19937 random(2);
+    for (std::uint64_t chunk = 0; chunk < 3; ++chunk) {
+      for (std::uint64_t i = 0; i < 4; ++i) {
+        std::string noise(50, '\0');
+        for (char& byte : noise) byte = static_cast<char>(random());
+        mcap.message(i % 2 == 0 ? left : right, chunk * 10 + i, noise);
+      }
+      mcap.end_chunk();
+      if (chunk == 1) second = file.size();
+      file += mcap.take_finished();
+    }
+    file += mcap.close();
+    // The checksum itself, behind two times and the plain size.
+    file[second + 9 + 24] ^= 1;
+    KeptBag bag;
+    const BagFacts facts = read_text(folder, file, bag);
+    EXPECT_EQ(facts.messages, 8U) << compression;
+    EXPECT_EQ(facts.lost_messages, 4U) << compression;
+    ASSERT_EQ(facts.notes.size(), 1U) << compression;
+    EXPECT_THAT(facts.notes[0], HasSubstr("at byte " + std::to_string(second) +
+                                          ": a chunk's checksum differs; its 4 messages of /left, "
+                                          "/right were left out"));
+  }
+}
+
+TEST(Mcap, TheChecksumOfTheDataSectionIsCompared) {
+  const ScratchFolder folder;
+  McapWriter mcap({.data_checksum = true});
+  const std::uint16_t id = mcap.channel("/a", "t", "cdr");
+  for (std::uint64_t i = 0; i < 100; ++i) mcap.message(id, i, std::string(3000, 'x'));
+  std::string file = mcap.close();
+  KeptBag whole;
+  EXPECT_THAT(read_text(folder, file, whole).notes, testing::IsEmpty());
+  file[file.size() / 2] ^= 4;
+  KeptBag bag;
+  const BagFacts facts = read_text(folder, file, bag);
+  EXPECT_EQ(facts.messages, 100U);
+  ASSERT_EQ(facts.notes.size(), 1U);
+  EXPECT_THAT(facts.notes[0], HasSubstr("the checksum of its data section differs"));
+}
+
+TEST(Mcap, AChannelThatStandsForTwoTopicsIsNeverMixed) {
+  const ScratchFolder folder;
+  for (const std::size_t chunk : {0U, 100'000U}) {
+    McapWriter mcap({.compression = chunk > 0 ? "lz4" : "", .chunk_bytes = chunk});
+    const std::uint16_t id = mcap.channel("/a", "t", "cdr");
+    for (std::uint64_t i = 0; i < 5; ++i) mcap.message(id, i, "x");
+    mcap.record(4, bytes_of(id, 2) + bytes_of(id, 2) + length_and("/b") + length_and("cdr") +
+                       length_and(""));
+    for (std::uint64_t i = 5; i < 12; ++i) mcap.message(id, i, "y");
+    KeptBag bag;
+    const BagFacts facts = read_text(folder, mcap.close(), bag);
+    EXPECT_EQ(bag.messages.size(), 5U);
+    ASSERT_EQ(facts.notes.size(), 2U);
+    EXPECT_THAT(facts.notes[0], HasSubstr("channel 1 stands for /a and for /b"));
+    EXPECT_THAT(facts.notes[1], HasSubstr("7 messages of channels that stand for two topics"));
+  }
+}
+
+TEST(Mcap, AChunkMayNotBecomeMoreThanItDeclares) {
+  const ScratchFolder folder;
+  for (const char* compression : {"lz4", "zstd"}) {
+    McapWriter mcap({.compression = compression, .chunk_bytes = 1 << 20, .checksums = false});
+    const std::uint16_t id = mcap.channel("/a", "t", "cdr");
+    for (std::uint64_t i = 0; i < 1000; ++i) mcap.message(id, i, std::string(69, 'x'));
+    std::string file = mcap.close();
+    const std::size_t declared = file.find(compression) - 4 - 4 - 8;
+    file.replace(declared, 8, bytes_of(20'000, 8));
+    KeptBag bag;
+    const BagFacts facts = read_text(folder, file, bag);
+    EXPECT_GT(facts.messages, 190U) << compression;
+    EXPECT_LE(facts.messages, 200U) << compression;
+    EXPECT_THAT(
+        facts.notes,
+        testing::Contains(HasSubstr("it becomes more than the 20000 bytes that it declares")));
+  }
+}
+
+TEST(Mcap, ASmallFileMayNotBecomeAnyNumberOfMessages) {
+  const ScratchFolder folder;
+  McapWriter mcap({.compression = "zstd", .chunk_bytes = 10 << 20, .checksums = false});
+  const std::uint16_t id = mcap.channel("/a", "t", "cdr");
+  for (int i = 0; i < 1'300'000; ++i) mcap.message(id, 1, "");
+  KeptBag bag(kLeaveOut);
+  const std::string file = mcap.close();
+  const BagFacts facts = read_text(folder, file, bag);
+  EXPECT_LT(file.size(), 100'000U);
+  EXPECT_EQ(facts.messages, 1'000'000 + file.size() / 16);
+  EXPECT_THAT(facts.notes, testing::Contains(HasSubstr("which is the limit for a file of this "
+                                                       "size; the rest was left out")));
 }
 
 // Read and lost are what was written, wherever the file ends.

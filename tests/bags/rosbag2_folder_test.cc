@@ -1,8 +1,15 @@
 #include "bags/rosbag2_folder.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "bags/bag.h"
+#include "bags/recorded_files.h"
+#include "tests/bags/bag_writers.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::bags {
@@ -50,6 +57,46 @@ TEST(Rosbag2Folder, AFileThatIsCompressedAsAWholeSaysHowToUnpackIt) {
   EXPECT_THAT(folder_refusal(folder), HasSubstr("zstd -d " + file + " -o "));
   folder.write("rig_0.db3", "");
   EXPECT_THAT(rosbag2_files(folder.path().string()), ElementsAre(folder / "rig_0.db3"));
+}
+
+TEST(Rosbag2Folder, AFileThatIsNamedTwiceIsReadOnce) {
+  const ScratchFolder folder;
+  const std::string file = folder.write("rig_0.db3", "");
+  std::filesystem::create_symlink(file, folder / "again.db3");
+  folder.write("metadata.yaml", "relative_file_paths:\n- rig_0.db3\n- rig_0.db3\n- again.db3\n");
+  std::vector<std::string> notes;
+  EXPECT_THAT(rosbag2_files(folder.path().string(), &notes), ElementsAre(file));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("rig_0.db3: stands twice"),
+                                 HasSubstr("again.db3: stands twice")));
+}
+
+std::string bag_refusal(const std::string& path) {
+  KeptBag bag;
+  try {
+    read_bag(path, bag);
+  } catch (const BagError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// A pipe that nobody writes would be waited for.
+TEST(Rosbag2Folder, PipesAndDevicesAreRefused) {
+  const ScratchFolder folder;
+  ASSERT_EQ(mkfifo((folder / "rig_0.db3").c_str(), 0600), 0);
+  EXPECT_THAT(bag_refusal(folder / "rig_0.db3"), HasSubstr("found a pipe, a device or a folder"));
+  EXPECT_THAT(bag_refusal("/dev/zero"), HasSubstr("found a pipe, a device or a folder"));
+  EXPECT_THROW(scan_recording(folder.path().string(), "rig", {}), BagError);
+  ASSERT_EQ(mkfifo((folder / "metadata.yaml").c_str(), 0600), 0);
+  EXPECT_THAT(folder_refusal(folder), HasSubstr("metadata.yaml: found a pipe"));
+}
+
+TEST(Rosbag2Folder, AFileThatIsCompressedAsAWholeIsKnownByItsBytes) {
+  const ScratchFolder folder;
+  const std::string path = folder.write("rig.db3.zstd", deflated("zstd", "SQLite format 3"));
+  EXPECT_TRUE(is_bag(path));
+  EXPECT_THAT(bag_refusal(path), HasSubstr("is compressed as a whole (zstd); unpack it: zstd -d " +
+                                           path + " -o " + std::string(folder / "rig.db3")));
 }
 
 TEST(Rosbag2Folder, AFolderWithoutBagsIsRefused) {

@@ -215,6 +215,22 @@ TEST_F(RosbagTest, WrongSizesDoNotMatter) {
   }
 }
 
+TEST_F(RosbagTest, AChunkMayNotBecomeMoreThanItDeclares) {
+  for (const Chunks chunks : {Chunks::kLz4, Chunks::kBzip2}) {
+    RosbagWriter writer(chunks, 100'000);
+    const auto topic = writer.add_topic("/a", "sensor_msgs/Image");
+    for (int i = 0; i < 200; ++i) writer.add_message(topic, milliseconds(i), std::string(60, 'x'));
+    std::string bytes = writer.bag();
+    const std::size_t size = bytes.find("size=", writer.chunk_positions()[0]) + 5;
+    bytes.replace(size, 4, little_endian(std::uint32_t{5000}));
+    KeepingSink sink;
+    const BagFacts facts = read(bytes, sink);
+    EXPECT_GT(sink.messages.size(), 20U);
+    EXPECT_LT(sink.messages.size(), 80U);
+    EXPECT_FALSE(facts.notes.empty());
+  }
+}
+
 TEST_F(RosbagTest, WhatCannotBeReadIsRefusedInOneLine) {
   const auto message_of = [](const std::string& bytes) -> std::string {
     KeepingSink sink;

@@ -106,8 +106,48 @@ TEST(SqliteBag, WhatARecorderLeftBehindIsStated) {
   const BagFacts facts = read_bag(path, bag);
   EXPECT_FALSE(facts.indexed);
   ASSERT_EQ(facts.notes.size(), 1U);
-  EXPECT_THAT(facts.notes[0], HasSubstr("-wal (9 bytes) was not read"));
+  EXPECT_THAT(facts.notes[0], HasSubstr("-wal (9 bytes) was read too"));
+  EXPECT_EQ(facts.messages, 3U);
   EXPECT_EQ(content(path + "-wal"), "something");
+  std::filesystem::remove(path + "-wal");
+  put(path + "-journal", "something");
+  KeptBag again;
+  EXPECT_THAT(read_bag(path, again).notes, testing::ElementsAre(HasSubstr("was not read")));
+}
+
+// The files of a recorder that was killed: 20 messages in the file, 30 in its write-ahead log.
+TEST(SqliteBag, WhatIsInTheWriteAheadLogIsRead) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "recorder");
+  std::filesystem::create_directory(folder / "killed");
+  const std::string written = folder / "recorder/rig.db3";
+  SqliteBagWriter writer(written);
+  const std::int64_t topic = writer.topic("/left", "sensor_msgs/msg/Image");
+  const auto write = [&](std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = from; i < to; ++i) writer.message(topic, i, cdr_header(i, 0, "f"));
+  };
+  write(0, 20);
+  writer.run("COMMIT; PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0; BEGIN;");
+  write(20, 50);
+  writer.run("COMMIT; BEGIN;");
+  const std::string killed = folder / "killed/rig.db3";
+  for (const std::string suffix : {"", "-wal"}) {
+    std::filesystem::copy(written + suffix, killed + suffix);
+  }
+  std::filesystem::create_symlink(killed, folder / "link.db3");
+  const std::string file = content(killed);
+  const std::string log = content(killed + "-wal");
+  for (const std::string& path : {killed, std::string(folder / "link.db3")}) {
+    KeptBag bag(16);
+    const BagFacts facts = read_bag(path, bag);
+    EXPECT_EQ(facts.messages, 50U);
+    EXPECT_EQ(bag.messages.back().head, cdr_header(49, 0, "f").substr(0, 16));
+    EXPECT_FALSE(facts.indexed);
+    EXPECT_THAT(facts.notes, testing::ElementsAre(HasSubstr("bytes) was read too")));
+  }
+  EXPECT_EQ(content(killed), file);
+  EXPECT_EQ(content(killed + "-wal"), log);
+  EXPECT_FALSE(std::filesystem::exists(killed + "-shm"));
 }
 
 TEST(SqliteBag, ADamagedPageCostsItsMessages) {
