@@ -4,12 +4,12 @@
 #include <string>
 
 #include "recording/number_in.h"
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 
 namespace simbench {
 namespace {
 
-// So many digits at the beginning of a text, which are taken off.
+// The number of `count` digits at the beginning of a text, which are taken off.
 std::optional<int> take_digits(std::string_view& text, std::size_t count) {
   if (text.size() < count) return std::nullopt;
   int value = 0;

@@ -71,7 +71,7 @@ bool has_times_of_day(const TableReader& table, std::size_t position) {
   return position < row.size() && date_time_in(row[position]).has_value();
 }
 
-std::optional<TimeUnit> unit_by_numbers(const TableReader& table, std::size_t position,
+std::optional<StampUnit> unit_by_numbers(const TableReader& table, std::size_t position,
                                         std::vector<std::string>& notes) {
   const std::vector<double> numbers = first_numbers(table, position);
   if (numbers.empty()) return std::nullopt;
@@ -86,7 +86,7 @@ std::optional<TimeUnit> unit_by_numbers(const TableReader& table, std::size_t po
   if (distances.empty()) return std::nullopt;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::ranges::nth_element(distances, middle);
-  const std::optional<TimeUnit> unit = frame_rate_unit(*middle);
+  const std::optional<StampUnit> unit = frame_rate_unit(*middle);
   if (unit) {
     notes.push_back(fmt::format("column {}: taken as {}, by its rate ({:.4g} frames a second)",
                                 label, unit_text(*unit), 1 / (*middle * unit->seconds())));
@@ -94,7 +94,7 @@ std::optional<TimeUnit> unit_by_numbers(const TableReader& table, std::size_t po
   return unit;
 }
 
-ResolvedColumns::Stamps stamps_of(const std::string& name, const std::optional<TimeUnit>& stated,
+ResolvedColumns::Stamps stamps_of(const std::string& name, const std::optional<StampUnit>& stated,
                                   std::size_t position, const TableReader& table,
                                   std::vector<std::string>& notes) {
   ResolvedColumns::Stamps stamps{.name = name, .position = position};
@@ -103,7 +103,7 @@ ResolvedColumns::Stamps stamps_of(const std::string& name, const std::optional<T
     return stamps;
   }
   if (has_times_of_day(table, position)) return stamps;
-  std::optional<TimeUnit> unit;
+  std::optional<StampUnit> unit;
   if (position < table.heading().size()) unit = heading_unit(table.heading()[position]);
   if (!unit) unit = unit_by_numbers(table, position, notes);
   if (!unit) {

@@ -23,7 +23,7 @@
 
 #include "recording/recorded_streams.h"
 #include "recording/table.h"
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 
 namespace simbench {
 
@@ -39,7 +39,7 @@ inline constexpr std::size_t kCsvFields = 7;
 struct RecordingColumns {
   struct Column {
     std::string name{};  // as in the heading, or a number from 1; blanks and capitals do not matter
-    std::optional<TimeUnit> unit{};
+    std::optional<StampUnit> unit{};
   };
   // By field; an empty name: none.
   std::array<Column, kCsvFields> columns{};
@@ -58,7 +58,7 @@ struct ResolvedColumns {
   struct Stamps {
     std::string name{};
     std::size_t position = 0;
-    TimeUnit unit{};
+    StampUnit unit{};
   };
   std::array<std::optional<std::size_t>, kCsvFields> position{};
   std::vector<Stamps> sensors{};  // at least one
@@ -68,7 +68,7 @@ struct ResolvedColumns {
 // Notes say what was taken for granted, without the file's name.
 ResolvedColumns resolve(const RecordingColumns& columns, const TableReader& table,
                         std::vector<std::string>& notes);
-// Of a table about which nothing is said: its only column of times, and a counter if one is called
+// For a table about which nothing is said: its only column of times, and a counter if one is called
 // so. Throws CsvError, with what would be read.
 ResolvedColumns found_columns(const TableReader& table, std::vector<std::string>& notes);
 

@@ -10,7 +10,7 @@
 
 #include "recording/date_time.h"
 #include "recording/number_in.h"
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 
 namespace simbench {
 namespace {

@@ -32,7 +32,7 @@ class TextFile {
 
   // Returns the number of bytes read, 1 to `most` (at least 4); 0 only at the end.
   std::size_t read(char* to, std::size_t most);
-  // Of the file itself, compressed or not: its size, 0 if that is unknown, and what was read of it.
+  // The size of the file itself, compressed or not, 0 if that is unknown, and what was read of it.
   std::uint64_t size() const;
   std::uint64_t bytes_read() const;
 

@@ -112,13 +112,13 @@ std::string figure_list() {
 
 namespace {
 
-enum class FileKind : std::uint8_t { kSvg, kPdf, kCsv };
+enum class PictureKind : std::uint8_t { kSvg, kPdf, kCsv };
 
-FileKind file_kind(const std::string& output) {
+PictureKind file_kind(const std::string& output) {
   const std::string extension = std::filesystem::path(output).extension().string();
-  if (extension == ".svg") return FileKind::kSvg;
-  if (extension == ".pdf") return FileKind::kPdf;
-  if (extension == ".csv") return FileKind::kCsv;
+  if (extension == ".svg") return PictureKind::kSvg;
+  if (extension == ".pdf") return PictureKind::kPdf;
+  if (extension == ".csv") return PictureKind::kCsv;
   throw InputError(
       fmt::format("--output: found '{}', allowed: a name that ends in .svg, .pdf or "
                   ".csv",
@@ -251,7 +251,7 @@ int draw_figure(const FigureCommand& command) {
     return kOk;
   }
   const FigureEntry& entry = reports::figure_named(command.name);
-  const FileKind kind = file_kind(command.output);
+  const PictureKind kind = file_kind(command.output);
   reports::OutputFile file(command.output);
   const std::optional<app::ArchiveFigures> made = make_figures(command, entry);
   if (!made) return kInterrupted;
@@ -261,12 +261,12 @@ int draw_figure(const FigureCommand& command) {
     throw InputError(fmt::format("{}: cannot be drawn: {}", command.name, figure.absent));
   }
   if (!command.inputs.empty() && command.name != entry.id) check_is_whole(command, figure);
-  if (kind == FileKind::kCsv) {
+  if (kind == PictureKind::kCsv) {
     file.write(reports::figure_csv(figure));
     file.publish();
   } else {
     reports::draw(figure,
-                  kind == FileKind::kSvg ? reports::PlotFormat::kSvg : reports::PlotFormat::kPdf,
+                  kind == PictureKind::kSvg ? reports::PlotFormat::kSvg : reports::PlotFormat::kPdf,
                   command.output);
   }
   print_note(fmt::format("{} written: {}. {}", command.output,

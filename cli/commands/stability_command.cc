@@ -44,9 +44,9 @@ struct StabilityOptions {
   evaluation::LogStabilityOptions stability;
 };
 
-std::optional<TimeUnit> unit_of(const char* option, const std::string& text) {
+std::optional<StampUnit> unit_of(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
-  const std::optional<TimeUnit> unit = unit_named(text);
+  const std::optional<StampUnit> unit = unit_named(text);
   if (!unit) refuse(option, fmt::format("found '{}', allowed: {}", text, kUnitsText));
   return unit;
 }

@@ -28,7 +28,7 @@ bool begins_with_time(const std::vector<std::string_view>& words) {
   return words.size() >= 3 && day_in(words[0]) && time_of_day_in(words[1]);
 }
 
-Microseconds time_of(const std::vector<std::string_view>& words) {
+Microseconds chrony_time_of(const std::vector<std::string_view>& words) {
   return std::chrono::duration_cast<Microseconds>(day_in(words[0])->time_since_epoch() +
                                                   *time_of_day_in(words[1]));
 }
@@ -58,7 +58,7 @@ class TrackingLines final : public LogLines {
       ++unsynchronised_;
       return std::nullopt;
     }
-    return LogLine{.format = "chrony_tracking", .point = {time_of(words), error_s}};
+    return LogLine{.format = "chrony_tracking", .point = {chrony_time_of(words), error_s}};
   }
 
   std::vector<std::string> notes() const override {
@@ -78,7 +78,7 @@ class StatisticsLines final : public LogLines {
     check_width(words, kStatisticsWords, place);
     return LogLine{.format = "chrony_statistics",
                    .name = words[2],
-                   .point = {time_of(words), finite_of(words[4], "offset", kLargestErrorS, place)}};
+                   .point = {chrony_time_of(words), finite_of(words[4], "offset", kLargestErrorS, place)}};
   }
 };
 
@@ -100,7 +100,7 @@ class MeasurementsLines final : public LogLines {
       return std::nullopt;
     }
     return LogLine{
-        .format = "chrony_measurements", .name = words[2], .point = {time_of(words), 0 - theta_s}};
+        .format = "chrony_measurements", .name = words[2], .point = {chrony_time_of(words), 0 - theta_s}};
   }
 
   std::vector<std::string> notes() const override {
@@ -127,7 +127,7 @@ class RefclocksLines final : public LogLines {
     }
     const double offset_s = finite_of(words[6], "raw offset", kLargestErrorS, place);
     return LogLine{
-        .format = "chrony_refclocks", .name = words[2], .point = {time_of(words), 0 - offset_s}};
+        .format = "chrony_refclocks", .name = words[2], .point = {chrony_time_of(words), 0 - offset_s}};
   }
 
   std::vector<std::string> notes() const override {

@@ -52,7 +52,7 @@
 #include <vector>
 
 #include "algorithms/ports/time.h"
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 
 namespace simbench::evaluation {
 
@@ -61,8 +61,8 @@ inline constexpr double kLargestErrorS = 1e10;
 inline constexpr std::size_t kMostLogSeries = 1000;
 
 struct ClockLogOptions {
-  std::optional<TimeUnit> unit{};       // of a table's errors
-  std::optional<TimeUnit> time_unit{};  // of its times
+  std::optional<StampUnit> unit{};       // of a table's errors
+  std::optional<StampUnit> time_unit{};  // of its times
   std::string series{};                 // which, of a file that has several; empty: the only one
   std::optional<double> interval_s{};   // of a table of one column
   bool frequencies =

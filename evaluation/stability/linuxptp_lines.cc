@@ -95,7 +95,7 @@ std::optional<Head> head_of(const LogEntry& entry) {
   return head;
 }
 
-// Of `journalctl -o cat`, which leaves the program out.
+// The program, which `journalctl -o cat` leaves out.
 const char* program_of(std::string_view message) {
   if (message.find("path delay") != std::string_view::npos) return "ptp4l";
   if (message.find("phc ") != std::string_view::npos ||

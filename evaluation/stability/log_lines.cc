@@ -9,7 +9,7 @@
 
 #include "recording/number_in.h"
 #include "recording/text_fields.h"
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {

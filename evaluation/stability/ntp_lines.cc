@@ -33,7 +33,7 @@ bool begins_with_day(const std::vector<std::string_view>& words) {
   return day >= kFirstDay && day <= kLastDay && microseconds_of(words[1]);
 }
 
-Microseconds time_of(const std::vector<std::string_view>& words, const LogPlace& place) {
+Microseconds statistics_time_of(const std::vector<std::string_view>& words, const LogPlace& place) {
   const Microseconds second = *microseconds_of(words[1]);
   if (second < Microseconds(0) || second >= std::chrono::seconds(kDaySeconds + 1)) {
     place.fail("second", words[1], "seconds of a day, from 0 to 86401");
@@ -56,7 +56,7 @@ class LoopstatsLines final : public LogLines {
                       words.size()));
     }
     const double offset_s = finite_of(words[2], "offset", kLargestErrorS, place);
-    return LogLine{.format = "loopstats", .point = {time_of(words, place), 0 - offset_s}};
+    return LogLine{.format = "loopstats", .point = {statistics_time_of(words, place), 0 - offset_s}};
   }
 };
 
@@ -79,7 +79,7 @@ class PeerstatsLines final : public LogLines {
     }
     const double offset_s = finite_of(words[4], "offset", kLargestErrorS, place);
     return LogLine{
-        .format = "peerstats", .name = words[2], .point = {time_of(words, place), 0 - offset_s}};
+        .format = "peerstats", .name = words[2], .point = {statistics_time_of(words, place), 0 - offset_s}};
   }
 };
 

@@ -108,7 +108,7 @@ class TableLog {
   void find_columns();
   std::size_t named_column(const std::vector<std::size_t>& values) const;
   void find_units();
-  std::optional<TimeUnit> stated_unit() const;
+  std::optional<StampUnit> stated_unit() const;
   void read_row(const std::vector<std::string_view>& row);
   void add_to_series(const std::vector<std::string_view>& row, Microseconds time, double value);
   Microseconds time_of(std::string_view cell);
@@ -125,8 +125,8 @@ class TableLog {
   std::size_t cells_;
   KeyColumns keys_;
   TableColumns columns_{};
-  std::optional<TimeUnit> unit_{};       // of errors
-  std::optional<TimeUnit> time_unit_{};  // of times that are numbers
+  std::optional<StampUnit> unit_{};       // of errors
+  std::optional<StampUnit> time_unit_{};  // of times that are numbers
   ClockLog log_{};
   bool whole_ = true;  // all errors are whole numbers
   std::size_t rows_ = 0;
@@ -184,7 +184,7 @@ std::size_t TableLog::named_column(const std::vector<std::size_t>& values) const
 }
 
 // By the heading, or by a comment above a table without one ("# unit: s").
-std::optional<TimeUnit> TableLog::stated_unit() const {
+std::optional<StampUnit> TableLog::stated_unit() const {
   const std::vector<std::string>& heading = table_.heading();
   if (columns_.error < heading.size()) return heading_unit(heading[columns_.error]);
   for (const std::string& comment : table_.comments()) {
@@ -202,7 +202,7 @@ void TableLog::find_units() {
   if (options_.frequencies) {
     unit_ = kSecondUnit;
   } else {
-    const std::optional<TimeUnit> stated = stated_unit();
+    const std::optional<StampUnit> stated = stated_unit();
     if (stated && options_.unit && *stated != *options_.unit) {
       begin().fail("--unit", unit_text(*options_.unit),
                    fmt::format("{}, which the column {} states", unit_text(*stated),
@@ -211,7 +211,7 @@ void TableLog::find_units() {
     unit_ = stated ? stated : options_.unit;
   }
   const bool named = columns_.time < table_.heading().size();
-  const std::optional<TimeUnit> stated =
+  const std::optional<StampUnit> stated =
       named ? heading_unit(table_.heading()[columns_.time]) : std::nullopt;
   if (stated && options_.time_unit && *stated != *options_.time_unit) {
     begin().fail("--time-unit", unit_text(*options_.time_unit),
@@ -228,7 +228,7 @@ Microseconds TableLog::time_of(std::string_view cell) {
   if (const auto time = date_time_in(cell)) return microseconds(*time);
   if (!time_unit_) {
     const std::optional<double> value = number_in<double>(cell);
-    const std::optional<TimeUnit> epoch = value ? epoch_unit(*value) : std::nullopt;
+    const std::optional<StampUnit> epoch = value ? epoch_unit(*value) : std::nullopt;
     time_unit_ = epoch.value_or(kSecondUnit);
     note(fmt::format("times are taken as {}{}: no heading and no --time-unit says so",
                      unit_text(*time_unit_), epoch ? " since 1970, by their size" : ""));

@@ -24,7 +24,7 @@ bool is_table_of_values(const TableReader& table);
 std::vector<ClockLogSeries> table_columns(const TableReader& table);
 // Whether it has columns that tell series apart.
 bool has_series_columns(const TableReader& table);
-// Reads all rows. Of a table of several series the log has notes alone, and `series` the points.
+// Reads all rows. If a table has several series, the log has notes alone, and `series` the points.
 // Throws scenarios::InputError, LineError.
 ClockLog read_table_log(TableReader& table, const ClockLogOptions& options, LogSeriesSet& series);
 

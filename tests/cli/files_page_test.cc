@@ -226,7 +226,7 @@ std::map<std::string, std::string> camera_files() {
 }
 
 // The commands between backticks in the tables of the page.
-std::vector<std::vector<std::string>> commands_of_page() {
+std::vector<std::vector<std::string>> commands_of_tables() {
   std::ifstream page(SIMBENCH_SOURCE_DIR "/docs/files.md");
   std::vector<std::vector<std::string>> commands;
   for (std::string line; std::getline(page, line);) {
@@ -245,7 +245,7 @@ TEST_F(FilesPage, EveryCommandRuns) {
   for (const auto& files : {linuxptp_files(), daemon_files(), table_files(), camera_files()}) {
     for (const auto& [name, content] : files) file(name, content);
   }
-  const std::vector<std::vector<std::string>> commands = commands_of_page();
+  const std::vector<std::vector<std::string>> commands = commands_of_tables();
   EXPECT_GT(commands.size(), 40U);
   for (const std::vector<std::string>& command : commands) {
     const ProgramResult result = run(command);

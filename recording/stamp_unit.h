@@ -23,38 +23,38 @@
 namespace simbench {
 
 // A unit is numerator/denominator seconds, in lowest terms.
-struct TimeUnit {
+struct StampUnit {
   std::int64_t numerator = 1;
   std::int64_t denominator = 1;
 
   double seconds() const {
     return static_cast<double>(numerator) / static_cast<double>(denominator);
   }
-  friend bool operator==(const TimeUnit&, const TimeUnit&) = default;
+  friend bool operator==(const StampUnit&, const StampUnit&) = default;
 };
 
-inline constexpr TimeUnit kSecondUnit{};
-inline constexpr TimeUnit kMillisecondUnit{1, 1000};
-inline constexpr TimeUnit kMicrosecondUnit{1, 1'000'000};
-inline constexpr TimeUnit kNanosecondUnit{1, 1'000'000'000};
-inline constexpr TimeUnit kPicosecondUnit{1, 1'000'000'000'000};
+inline constexpr StampUnit kSecondUnit{};
+inline constexpr StampUnit kMillisecondUnit{1, 1000};
+inline constexpr StampUnit kMicrosecondUnit{1, 1'000'000};
+inline constexpr StampUnit kNanosecondUnit{1, 1'000'000'000};
+inline constexpr StampUnit kPicosecondUnit{1, 1'000'000'000'000};
 
 // "ns", "8 ns", "90kHz", "1/30000 s": the name, or a factor and a name; of frequencies the period.
-std::optional<TimeUnit> unit_named(std::string_view text);
-std::optional<TimeUnit> heading_unit(std::string_view heading);
+std::optional<StampUnit> unit_named(std::string_view text);
+std::optional<StampUnit> heading_unit(std::string_view heading);
 // "ns", "us"; "8 ns" of a factor.
-std::string unit_text(const TimeUnit& unit);
+std::string unit_text(const StampUnit& unit);
 // What unit_named() reads, for messages.
 inline constexpr const char* kUnitsText = "s, ms, us, ns, ps, or ticks such as 8ns or 90kHz";
 
 // The unit of a number that counts from 1970 (from 1990 to 2100), by its size; nothing for others.
-std::optional<TimeUnit> epoch_unit(double number);
+std::optional<StampUnit> epoch_unit(double number);
 // The only unit in which frames that are so far apart come 1 to 1000 times a second; nothing if
 // there is none.
-std::optional<TimeUnit> frame_rate_unit(double distance);
+std::optional<StampUnit> frame_rate_unit(double distance);
 
 // A decimal number with sign, point and exponent as these have them; nothing for any other text,
 // and beyond what 64 bits of nanoseconds hold (292 years). Digits below a nanosecond are rounded.
-std::optional<Nanoseconds> time_in(std::string_view text, const TimeUnit& unit);
+std::optional<Nanoseconds> time_in(std::string_view text, const StampUnit& unit);
 
 }  // namespace simbench

@@ -1,4 +1,4 @@
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace simbench {
 namespace {
 
-TEST(TimeUnit, IsReadFromAHeadingInAllUsualSpellings) {
+TEST(StampUnit, IsReadFromAHeadingInAllUsualSpellings) {
   for (const char* heading :
        {"offset_ns", "offset_NS", "offset_nsec", "offsetNs", "offset (ns)", "offset [ns]",
         "offset:ns", "offset/ns", "offset ns", "ns", "TE_nanoseconds", "offset_ns_mean"}) {
@@ -25,28 +25,28 @@ TEST(TimeUnit, IsReadFromAHeadingInAllUsualSpellings) {
   EXPECT_EQ(heading_unit("time_s"), kSecondUnit);
   EXPECT_EQ(heading_unit("time (s)"), kSecondUnit);
   EXPECT_EQ(heading_unit("offset_ps"), kPicosecondUnit);
-  EXPECT_EQ(heading_unit("MJD"), (TimeUnit{86'400, 1}));
+  EXPECT_EQ(heading_unit("MJD"), (StampUnit{86'400, 1}));
   for (const char* heading :
        {"", "offset", "error", "bonus", "hosts", "status", "ns_per_us", "freq (ppb)", "s of x"}) {
     EXPECT_EQ(heading_unit(heading), std::nullopt) << heading;
   }
 }
 
-TEST(TimeUnit, HasFactorsAndFrequencies) {
-  EXPECT_EQ(unit_named("8ns"), (TimeUnit{1, 125'000'000}));
+TEST(StampUnit, HasFactorsAndFrequencies) {
+  EXPECT_EQ(unit_named("8ns"), (StampUnit{1, 125'000'000}));
   EXPECT_EQ(unit_named(" 8 ns "), unit_named("8ns"));
   EXPECT_EQ(unit_named("125MHz"), unit_named("8ns"));
-  EXPECT_EQ(unit_named("90kHz"), (TimeUnit{1, 90'000}));
-  EXPECT_EQ(unit_named("1/30000s"), (TimeUnit{1, 30'000}));
-  EXPECT_EQ(unit_named("1001/30000 s"), (TimeUnit{1001, 30'000}));
+  EXPECT_EQ(unit_named("90kHz"), (StampUnit{1, 90'000}));
+  EXPECT_EQ(unit_named("1/30000s"), (StampUnit{1, 30'000}));
+  EXPECT_EQ(unit_named("1001/30000 s"), (StampUnit{1001, 30'000}));
   for (const char* text : {"", "parsec", "0ns", "-8ns", "8", "8/0ns", "8//3ns", "ns8"}) {
     EXPECT_EQ(unit_named(text), std::nullopt) << text;
   }
 }
 
-TEST(TimeUnit, ItsTextIsReadBack) {
+TEST(StampUnit, ItsTextIsReadBack) {
   for (const char* text : {"s", "ms", "us", "ns", "ps", "8ns", "90kHz", "1001/30000s", "h"}) {
-    const TimeUnit unit = *unit_named(text);
+    const StampUnit unit = *unit_named(text);
     EXPECT_EQ(unit_named(unit_text(unit)), unit) << text << " " << unit_text(unit);
   }
   EXPECT_EQ(unit_text(kMicrosecondUnit), "us");

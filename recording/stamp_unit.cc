@@ -1,4 +1,4 @@
-#include "recording/time_unit.h"
+#include "recording/stamp_unit.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 struct UnitSpelling {
   std::string_view name;  // in small letters
-  TimeUnit unit;
+  StampUnit unit;
 };
 
 constexpr auto kSpellings = std::to_array<UnitSpelling>({
@@ -59,7 +59,7 @@ constexpr auto kSpellings = std::to_array<UnitSpelling>({
     {"mjd", {86'400, 1}},
 });
 
-constexpr std::array<TimeUnit, 4> kUsualUnits = {kSecondUnit, kMillisecondUnit, kMicrosecondUnit,
+constexpr std::array<StampUnit, 4> kUsualUnits = {kSecondUnit, kMillisecondUnit, kMicrosecondUnit,
                                                  kNanosecondUnit};
 
 constexpr auto kFrequencies = std::to_array<UnitSpelling>({
@@ -85,13 +85,13 @@ std::string plain(std::string_view text) {
 }
 
 template <class Spellings>
-std::optional<TimeUnit> spelled(std::string_view letters, const Spellings& spellings) {
+std::optional<StampUnit> spelled(std::string_view letters, const Spellings& spellings) {
   const auto found = std::ranges::find(spellings, letters, &UnitSpelling::name);
   if (found == spellings.end()) return std::nullopt;
   return found->unit;
 }
 
-std::optional<TimeUnit> unit_of_word(std::string_view word) {
+std::optional<StampUnit> unit_of_word(std::string_view word) {
   return spelled(plain(word), kSpellings);
 }
 
@@ -115,7 +115,7 @@ std::vector<std::string_view> words_of_heading(std::string_view heading) {
   return words;
 }
 
-std::optional<TimeUnit> unit_in_brackets(std::string_view heading) {
+std::optional<StampUnit> unit_in_brackets(std::string_view heading) {
   for (const std::string_view brackets : {"()", "[]"}) {
     const std::size_t open = heading.rfind(brackets[0]);
     const std::size_t close = heading.find(brackets[1], open == std::string_view::npos ? 0 : open);
@@ -125,7 +125,7 @@ std::optional<TimeUnit> unit_in_brackets(std::string_view heading) {
   return std::nullopt;
 }
 
-std::optional<TimeUnit> scaled(const TimeUnit& unit, std::int64_t numerator,
+std::optional<StampUnit> scaled(const StampUnit& unit, std::int64_t numerator,
                                std::int64_t denominator) {
   __extension__ using Wide = __int128;
   Wide top = static_cast<Wide>(unit.numerator) * numerator;
@@ -136,7 +136,7 @@ std::optional<TimeUnit> scaled(const TimeUnit& unit, std::int64_t numerator,
   bottom /= a;
   constexpr Wide kMost = 1'000'000'000'000'000'000;
   if (top <= 0 || top > kMost || bottom > kMost) return std::nullopt;
-  return TimeUnit{static_cast<std::int64_t>(top), static_cast<std::int64_t>(bottom)};
+  return StampUnit{static_cast<std::int64_t>(top), static_cast<std::int64_t>(bottom)};
 }
 
 // A number in a text as mantissa * 10^exponent; 36 digits at most count.
@@ -186,7 +186,7 @@ std::optional<Decimal> decimal_of(std::string_view text) {
 
 }  // namespace
 
-std::optional<TimeUnit> unit_named(std::string_view text) {
+std::optional<StampUnit> unit_named(std::string_view text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
   std::int64_t numerator = 1;
@@ -211,10 +211,10 @@ std::optional<TimeUnit> unit_named(std::string_view text) {
   return std::nullopt;
 }
 
-std::optional<TimeUnit> heading_unit(std::string_view heading) {
+std::optional<StampUnit> heading_unit(std::string_view heading) {
   if (const auto unit = unit_in_brackets(heading)) return unit;
   const std::vector<std::string_view> words = words_of_heading(heading);
-  std::optional<TimeUnit> only;
+  std::optional<StampUnit> only;
   for (const std::string_view word : words) {
     const bool is_last = word.data() == words.back().data();
     const auto unit = word.size() > 1 || is_last ? unit_of_word(word) : std::nullopt;
@@ -225,8 +225,8 @@ std::optional<TimeUnit> heading_unit(std::string_view heading) {
   return only;
 }
 
-std::string unit_text(const TimeUnit& unit) {
-  for (const TimeUnit& base :
+std::string unit_text(const StampUnit& unit) {
+  for (const StampUnit& base :
        {kSecondUnit, kMillisecondUnit, kMicrosecondUnit, kNanosecondUnit, kPicosecondUnit}) {
     if (unit.denominator != base.denominator) continue;
     const auto name = std::ranges::find(kSpellings, base, &UnitSpelling::unit)->name;
@@ -235,25 +235,25 @@ std::string unit_text(const TimeUnit& unit) {
   return fmt::format("{}/{} s", unit.numerator, unit.denominator);
 }
 
-std::optional<TimeUnit> epoch_unit(double number) {
+std::optional<StampUnit> epoch_unit(double number) {
   constexpr double kFrom = 6.3e8;
   constexpr double kUntil = 4.1e9;
-  for (const TimeUnit& unit : kUsualUnits) {
+  for (const StampUnit& unit : kUsualUnits) {
     const double seconds = number * unit.seconds();
     if (seconds > kFrom && seconds < kUntil) return unit;
   }
   return std::nullopt;
 }
 
-std::optional<TimeUnit> frame_rate_unit(double distance) {
-  for (const TimeUnit& unit : kUsualUnits) {
+std::optional<StampUnit> frame_rate_unit(double distance) {
+  for (const StampUnit& unit : kUsualUnits) {
     const double seconds = distance * unit.seconds();
     if (seconds > 1e-3 && seconds <= 1) return unit;
   }
   return std::nullopt;
 }
 
-std::optional<Nanoseconds> time_in(std::string_view text, const TimeUnit& unit) {
+std::optional<Nanoseconds> time_in(std::string_view text, const StampUnit& unit) {
   __extension__ using Wide = unsigned __int128;
   constexpr auto kMost = static_cast<Wide>(std::numeric_limits<std::int64_t>::max());
   std::optional<Decimal> number = decimal_of(text);
