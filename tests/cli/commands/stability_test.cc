@@ -67,7 +67,7 @@ TEST_F(StabilityCommand, TakesUnitSeriesAndInterval) {
   EXPECT_EQ(found["left_out"], 2);
   EXPECT_DOUBLE_EQ(found["max_te_ms"].get<double>(), 2e-3);
   EXPECT_THAT(run({"stability", "a.csv", "--series", "b", "--format", "csv"}).out,
-              StartsWith("file,format,quantity,tau_s,value,terms\n"));
+              StartsWith("file,format,quantity,tau_s,value,terms,low,high,noise,reliable\n"));
 }
 
 TEST_F(StabilityCommand, BadInputIsNamed) {
@@ -86,6 +86,46 @@ TEST_F(StabilityCommand, BadInputIsNamed) {
   const ProgramResult interval = run({"stability", "a.csv", "--interval-s", "0"});
   EXPECT_EQ(interval.status, 2);
   EXPECT_THAT(interval.err, HasSubstr("--interval-s: found '0', allowed: a number from"));
+}
+
+TEST_F(StabilityCommand, AMaskThatIsNotKeptIsStatus3) {
+  file("a.csv", csv(100, 5));
+  const ProgramResult fails = run({"stability", "a.csv", "--mask", "prtc_a", "--json"});
+  EXPECT_EQ(fails.status, 3) << fails.err;
+  const Json verdict = Json::parse(fails.out)["files"][0]["verdicts"][0];
+  EXPECT_EQ(verdict["mask"], "prtc_a");
+  EXPECT_EQ(verdict["judgement"], "fails");
+  EXPECT_EQ(verdict["limits"][0]["quantity"], "max_te_ms");
+  const ProgramResult other = run({"stability", "a.csv", "--mask", "prtc"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("--mask: found 'prtc', allowed: "));
+}
+
+TEST_F(StabilityCommand, LimitsOfOnesOwnAreJudged) {
+  file("a.csv", csv(100, 5));
+  const ProgramResult kept =
+      run({"stability", "a.csv", "--limit", "max_te=20us,p99=20us", "--limit", "mtie@3s=1ms"});
+  EXPECT_EQ(kept.status, 0) << kept.err;
+  EXPECT_THAT(kept.out, HasSubstr("--limit: passes; nearest: "));
+  const ProgramResult untold = run({"stability", "a.csv", "--limit", "tdev@50s=1ms"});
+  EXPECT_EQ(untold.status, 0) << "nothing is beyond";
+  EXPECT_THAT(untold.out, HasSubstr("cannot be judged as a whole"));
+  EXPECT_EQ(run({"stability", "a.csv", "--limit", "adev@1s=1e-12"}).status, 3);
+  const ProgramResult wrong = run({"stability", "a.csv", "--limit", "max_te=20"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--limit max_te=20: value: found '20', allowed: a time"));
+}
+
+TEST_F(StabilityCommand, DrawsItsFigure) {
+  file("a.csv", csv(300, 5));
+  const ProgramResult result =
+      run({"stability", "a.csv", "--mask", "sec", "--figure", "clock.svg"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("clock.svg written"));
+  EXPECT_THAT(content("clock.svg"), AllOf(HasSubstr("<svg"), HasSubstr("G.813 option 1 MTIE")));
+  const ProgramResult png = run({"stability", "a.csv", "--figure", "clock.png"});
+  EXPECT_EQ(png.status, 2);
+  EXPECT_THAT(png.err, HasSubstr("--figure: found 'clock.png', allowed: "));
 }
 
 }  // namespace
