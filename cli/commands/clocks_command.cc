@@ -6,12 +6,11 @@
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/figure_file.h"
 #include "cli/program_options.h"
 #include "cli/progress.h"
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "reports/clocks/clock_report.h"
-#include "reports/figures/gnuplot.h"
-#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -41,20 +40,8 @@ struct ClocksOptions {
   std::vector<std::string> command;
 };
 
-reports::PlotFormat plot_format(const std::string& path) {
-  if (path.ends_with(".svg")) return reports::PlotFormat::kSvg;
-  if (path.ends_with(".pdf")) return reports::PlotFormat::kPdf;
-  throw scenarios::InputError("--figure: found '" + path +
-                              "', allowed: a name that ends in .svg or .pdf");
-}
-
 int clocks(ClocksOptions options) {
-  std::optional<reports::PlotFormat> plot;
-  std::optional<reports::OutputFile> figure;  // refuses before the work what cannot be written
-  if (!options.figure.empty()) {
-    plot = plot_format(options.figure);
-    figure.emplace(options.figure);
-  }
+  const FigureFile figure(options.figure);
   app::RunArchive archive(options.command);
   const scenarios::Scenario scenario =
       load_with_programs(options.scenario, options.sets, options.programs, options.clocks.pipelines,
@@ -80,10 +67,8 @@ int clocks(ClocksOptions options) {
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
   if (!causes) return kInterrupted;
   print_result(app::clock_text(*results, scenario, options.format));
-  if (plot) {  // last: without gnuplot the results are there all the same
-    reports::draw(reports::clock_figure(*results), *plot, options.figure);
-    print_note(options.figure + " written");
-  }
+  // Last: without gnuplot the results are there all the same.
+  if (figure) figure.draw(reports::clock_figure(*results));
   return kOk;
 }
 

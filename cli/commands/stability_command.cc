@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/figure_file.h"
 #include "evaluation/stability/log_stability.h"
+#include "evaluation/stability/mask_verdict.h"
 #include "recording/date_time.h"
 #include "recording/number_in.h"
+#include "reports/figures/stability_figure.h"
 #include "reports/stability/stability_report.h"
 
 namespace simbench::cli {
@@ -30,8 +35,10 @@ Examples:
   simbench stability syslog --series
   simbench stability errors.csv --unit ns --format json > stability.json
   simbench stability phase.txt --tau0 1 --remove-frequency
+  simbench stability ptp4l.txt --mask class_b --figure ptp4l.svg
+  simbench stability errors.csv --limit max_te=100ns,mtie@10s=50ns,adev@1s=1e-9,p99=80ns
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 3 a limit is not kept.)";
 
 struct StabilityOptions {
   std::vector<std::string> files;
@@ -41,6 +48,9 @@ struct StabilityOptions {
   std::string from;
   std::string until;
   evaluation::ClockLogOptions log;
+  std::string mask;
+  std::vector<std::string> limits;
+  std::string figure;
   evaluation::LogStabilityOptions stability;
 };
 
@@ -84,20 +94,46 @@ int list_series(const StabilityOptions& options) {
   return kOk;
 }
 
+std::vector<evaluation::ClockMask> masks_of(const StabilityOptions& options) {
+  std::vector<evaluation::ClockMask> masks;
+  if (!options.mask.empty()) masks.push_back(evaluation::mask_named(options.mask));
+  if (!options.limits.empty()) masks.push_back(evaluation::limits_mask(options.limits));
+  return masks;
+}
+
+bool keeps_limits(const reports::StabilityFinding& finding) {
+  return std::ranges::none_of(finding.verdicts, [](const evaluation::MaskVerdict& verdict) {
+    return verdict.judgement == evaluation::Judgement::kFails;
+  });
+}
+
 int run_stability(const StabilityOptions& options) {
-  std::vector<evaluation::LogStability> found;
+  const FigureFile figure(options.figure);
+  const std::vector<evaluation::ClockMask> masks = masks_of(options);
+  std::vector<reports::StabilityFinding> found;
   for (const std::string& file : options.files) {
     const evaluation::ClockLog log = evaluation::read_clock_log(file, options.log);
-    found.push_back(evaluation::stability_of_log(log, options.stability));
+    reports::StabilityFinding finding{.log = evaluation::stability_of_log(log, options.stability)};
+    if (log.are_summaries() && !masks.empty()) {
+      throw scenarios::InputError(
+          file +
+          ": found summaries (rms, max), which no limit judges, allowed: a line for each update");
+    }
+    for (const evaluation::ClockMask& mask : masks) {
+      finding.verdicts.push_back(evaluation::judge(finding.log.stability, mask));
+    }
+    found.push_back(std::move(finding));
   }
-  for (const evaluation::LogStability& file : found) {
-    for (const std::string& note : file.notes) print_note(note);
+  for (const reports::StabilityFinding& finding : found) {
+    for (const std::string& note : finding.log.notes) print_note(note);
   }
   print_result(options.format == "json" ? reports::stability_json(found)
                : options.format == "csv"
                    ? reports::stability_csv(found)
                    : reports::drawn_as(options.format, reports::stability_document(found)));
-  return kOk;
+  // Last: without gnuplot the results are there all the same.
+  if (figure) figure.draw(reports::stability_figure(found, masks));
+  return std::ranges::all_of(found, keeps_limits) ? kOk : kGateFailed;
 }
 
 }  // namespace
@@ -133,6 +169,16 @@ void add_stability_command(CommandLine& line) {
                "Without the start, of a clock that was not set yet");
   command.flag("--remove-frequency", options->stability.remove_frequency,
                "Remove the frequency offset (a least-squares line) before anything else");
+  std::vector<std::string> masks;
+  for (const evaluation::ClockMask& mask : evaluation::masks()) masks.push_back(mask.id);
+  command.word("--mask", "MASK", options->mask, masks,
+               "Judge by the limits of ITU-T: G.8272 (prtc), G.8273.2 (class), G.813 (sec)");
+  command.list("--limit", "LIMIT,...", options->limits,
+               "Judge by limits of your own: max_te, cte, te_p2p, p50, p95, p99, p99.9, mtie@TAU,\n"
+               "tdev@TAU with a time, adev@TAU, mdev@TAU, hdev@TAU with a number");
+  command.text("--figure", "FILE", options->figure,
+               "Draw ADEV, TDEV and MTIE with their intervals and limits to this file (.svg or\n"
+               ".pdf, by gnuplot)");
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.footer(kStabilityExamples);
   command.runs(

@@ -1,31 +1,25 @@
-#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "evaluation/clock_run/clock_score.h"
+#include "evaluation/stability/masks.h"
 #include "reports/clocks/clock_report.h"
+#include "reports/figures/stability_figure.h"
 
 namespace simbench::reports {
 namespace {
 
-// A limit from recommendations that were made for telecommunication clocks, for orientation only.
-// Its points in seconds and nanoseconds, joined by straight lines on logarithmic axes.
-struct Mask {
-  const char* curve;
-  const char* label;
-  std::vector<std::pair<double, double>> points;
-};
-
-// G.8262 (11/18), tables 1 and 3: wander generation of a synchronous Ethernet equipment clock of
-// option 1 at constant temperature: MTIE 40 ns to 1 s, 40 tau^0.1 to 100 s, 25.25 tau^0.2 to
-// 1000 s; TDEV 3.2 ns to 25 s, 0.64 tau^0.5 to 100 s, 6.4 ns to 1000 s. G.8273.2 (10/20), clause
-// 7.1: dynamic time error of a telecom boundary clock of class A and B: MTIE 40 ns to 1000 s, TDEV
-// 4 ns to 1000 s.
-std::vector<Mask> masks() {
-  return {{"mtie_ms", "G.8262 option 1", {{0.1, 40}, {1, 40}, {100, 63.4}, {1000, 100.5}}},
-          {"mtie_ms", "G.8273.2 dTE_L", {{0.1, 40}, {1000, 40}}},
-          {"tdev_ms", "G.8262 option 1", {{0.1, 3.2}, {25, 3.2}, {100, 6.4}, {1000, 6.4}}},
-          {"tdev_ms", "G.8273.2 dTE_L", {{0.1, 4}, {1000, 4}}}};
+// Limits that were made for telecommunication clocks, for orientation only. G.8262 option 1 has
+// those of G.813 option 1; classes A and B of G.8273.2 have one dynamic time error.
+std::vector<std::pair<const char*, const evaluation::MaskLimit*>> orientation() {
+  std::vector<std::pair<const char*, const evaluation::MaskLimit*>> limits;
+  for (const evaluation::MaskLimit& limit : evaluation::mask_named("sec").limits) {
+    limits.emplace_back("G.8262 option 1", &limit);
+  }
+  for (const evaluation::MaskLimit& limit : evaluation::mask_named("class_a").limits) {
+    if (limit.band == evaluation::Band::kLow) limits.emplace_back("G.8273.2 dTE_L", &limit);
+  }
+  return limits;
 }
 
 FigureSeries curve_series(const std::string& label, int colour,
@@ -40,13 +34,9 @@ FigureSeries curve_series(const std::string& label, int colour,
 
 void add_masks(const evaluation::ClockCurve& curve, double first_tau_s, FigurePanel& panel) {
   int colour = static_cast<int>(panel.series.size());
-  for (const Mask& mask : masks()) {
-    if (mask.curve != std::string(curve.id)) continue;
-    FigureSeries series{.label = mask.label, .mark = Mark::kLine, .colour = colour++};
-    for (const auto& [tau_s, ns] : mask.points) {
-      series.add(std::max(tau_s, first_tau_s), ns * 1e-6);
-    }
-    panel.series.push_back(std::move(series));
+  for (const auto& [label, limit] : orientation()) {
+    if (evaluation::facts_of(limit->quantity).deviation != curve.deviation) continue;
+    panel.series.push_back(limit_line(*limit, label, colour++, first_tau_s));
   }
 }
 

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "recording/counted.h"
+#include "reports/stability/verdict_text.h"
 #include "reports/text/answer_json.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/number_text.h"
@@ -18,8 +20,12 @@
 namespace simbench::reports {
 namespace {
 
+using evaluation::Certainty;
 using evaluation::ClockCurve;
+using evaluation::Deviation;
+using evaluation::Judgement;
 using evaluation::LogStability;
+using evaluation::MaskVerdict;
 using evaluation::Stability;
 using evaluation::StabilityPoint;
 
@@ -34,16 +40,19 @@ std::string column_header(const ClockCurve& curve) {
 
 struct Size {
   const char* name;
-  const char* header;
+  const char* header;  // null: in no table
   double evaluation::TimeErrorSummary::*value;
 };
-constexpr std::array<Size, 5> kSizes = {
+constexpr std::array<Size, 9> kSizes = {
     {{"max_te_ms", "max |TE|\nms", &evaluation::TimeErrorSummary::max_te_ms},
      {"rms_te_ms", "RMS TE\nms", &evaluation::TimeErrorSummary::rms_te_ms},
      {"constant_te_ms", "constant\nTE ms", &evaluation::TimeErrorSummary::constant_te_ms},
      {"dynamic_te_ms", "dynamic TE\nRMS ms", &evaluation::TimeErrorSummary::dynamic_te_ms},
-     {"dynamic_te_p2p_ms", "dynamic TE\np-p ms",
-      &evaluation::TimeErrorSummary::dynamic_te_p2p_ms}}};
+     {"dynamic_te_p2p_ms", "dynamic TE\np-p ms", &evaluation::TimeErrorSummary::dynamic_te_p2p_ms},
+     {"p50_te_ms", nullptr, &evaluation::TimeErrorSummary::p50_te_ms},
+     {"p95_te_ms", nullptr, &evaluation::TimeErrorSummary::p95_te_ms},
+     {"p99_te_ms", nullptr, &evaluation::TimeErrorSummary::p99_te_ms},
+     {"p99_9_te_ms", nullptr, &evaluation::TimeErrorSummary::p99_9_te_ms}}};
 
 // Three digits, of nanoseconds as of seconds.
 std::string three_digits(double value) { return value == 0 ? "0" : fmt::format("{:.3g}", value); }
@@ -68,7 +77,7 @@ std::string offset_text(const LogStability& file) {
   return file.frequency_offset ? fmt::format("{:.6g}", 1e9 * *file.frequency_offset) : "-";
 }
 
-Table files_table(const std::vector<LogStability>& files) {
+Table files_table(const std::vector<StabilityFinding>& findings) {
   std::vector<Column> columns = {{"file", Align::kLeft},
                                  {"format", Align::kLeft},
                                  {"points"},
@@ -76,9 +85,12 @@ Table files_table(const std::vector<LogStability>& files) {
                                  {"gaps"},
                                  {"steps"},
                                  {"removed\nppb"}};
-  for (const Size& size : kSizes) columns.push_back({size.header});
+  for (const Size& size : kSizes) {
+    if (size.header != nullptr) columns.push_back({size.header});
+  }
   Table table(columns);
-  for (const LogStability& file : files) {
+  for (const StabilityFinding& finding : findings) {
+    const LogStability& file = finding.log;
     const Stability& stability = file.stability;
     std::vector<std::string> cells = {name_of(file),
                                       file.format,
@@ -88,6 +100,7 @@ Table files_table(const std::vector<LogStability>& files) {
                                       count_text(static_cast<std::int64_t>(stability.steps.size())),
                                       offset_text(file)};
     for (const Size& size : kSizes) {
+      if (size.header == nullptr) continue;
       cells.push_back(has_size(file, size) ? three_digits(stability.time_error.*size.value) : "-");
     }
     table.add(std::move(cells));
@@ -134,7 +147,8 @@ std::string start_text(const LogStability& file) {
       time_text(start.settled.rms_te_ms));
 }
 
-Json file_json(const LogStability& file) {
+Json file_json(const StabilityFinding& finding) {
+  const LogStability& file = finding.log;
   Json object = {{"file", file.file},
                  {"format", file.format},
                  {"series", file.series},
@@ -157,16 +171,80 @@ Json file_json(const LogStability& file) {
   for (const evaluation::TimeErrorStep& step : file.stability.steps) {
     object["steps"].push_back({{"at_s", step.at_s}, {"step_ms", 1e3 * step.step_s}});
   }
+  object["verdicts"] = Json::array();
+  for (const MaskVerdict& verdict : finding.verdicts) {
+    object["verdicts"].push_back(mask_verdict_json(verdict));
+  }
   object["notes"] = file.notes;
   return object;
+}
+
+// Whether the text has room for the intervals of a curve.
+bool has_interval_in_text(const ClockCurve& curve) {
+  return curve.deviation == Deviation::kAdev || curve.deviation == Deviation::kTdev;
+}
+
+bool is_reliable(const ClockCurve& curve, const StabilityPoint& point) {
+  return curve.deviation == Deviation::kMtie || (point.certainty && point.certainty->reliable);
+}
+
+std::string certainty_text(const std::optional<Certainty>& certainty) {
+  return certainty ? fmt::format("{:.2g}..{:.2g}", certainty->low, certainty->high) : "-";
+}
+
+// The point as points_json() has it, and its certainty.
+void add_certainty_json(Json& object, const std::optional<Certainty>& certainty) {
+  for (const char* const member : {"low", "high", "noise"}) object[member] = nullptr;
+  object["reliable"] = certainty && certainty->reliable;
+  if (!certainty) return;
+  object["low"] = certainty->low;
+  object["high"] = certainty->high;
+  object["noise"] = evaluation::noise_id(certainty->noise);
+}
+
+// The last four cells of a line.
+std::string certainty_csv(const ClockCurve& curve, const std::optional<Certainty>& certainty) {
+  if (!certainty) return curve.deviation == Deviation::kMtie ? ",,," : ",,,0";
+  return fmt::format("{},{},{},{}", csv_cell(certainty->low), csv_cell(certainty->high),
+                     evaluation::noise_id(certainty->noise), certainty->reliable ? 1 : 0);
+}
+
+std::string percentiles_text(const evaluation::TimeErrorSummary& size) {
+  return fmt::format(
+      "|TE| is at most {} in 50 %, {} in 95 %, {} in 99 %, {} in 99.9 % of the points.",
+      time_text(size.p50_te_ms), time_text(size.p95_te_ms), time_text(size.p99_te_ms),
+      time_text(size.p99_9_te_ms));
+}
+
+// The sentence of a single verdict, else how many say what, and those that fail.
+std::string limits_text(const std::vector<StabilityFinding>& findings) {
+  std::array<std::uint64_t, 3> counts{};
+  std::string failures;
+  std::string single;
+  for (const StabilityFinding& finding : findings) {
+    for (const MaskVerdict& verdict : finding.verdicts) {
+      ++counts[static_cast<std::size_t>(verdict.judgement)];
+      single = mask_verdict_text(verdict);
+      if (verdict.judgement == Judgement::kFails) {
+        failures += fmt::format(" {}, {}", finding.log.file, single);
+      }
+    }
+  }
+  const auto [passed, failed, untold] = counts;
+  const std::uint64_t all = passed + failed + untold;
+  if (all < 2) return single;
+  return fmt::format("{}: {} passed, {} failed, {} cannot be judged as a whole.{}",
+                     counted(all, "verdict"), passed, failed, untold, failures);
 }
 
 }  // namespace
 
 Table stability_table(const Stability& stability) {
   std::vector<Column> columns = {{"tau s"}};
-  for (const ClockCurve& curve : evaluation::clock_curves())
+  for (const ClockCurve& curve : evaluation::clock_curves()) {
     columns.push_back({column_header(curve)});
+    if (has_interval_in_text(curve)) columns.push_back({"95 %\ninterval"});
+  }
   Table table(columns);
   // MTIE reaches farthest, and all begin at one interval and go on by octaves.
   std::size_t octaves = 0;
@@ -177,7 +255,13 @@ Table stability_table(const Stability& stability) {
         fmt::format("{:.6g}", std::ldexp(stability.interval_s, static_cast<int>(i)))};
     for (const ClockCurve& curve : evaluation::clock_curves()) {
       const std::vector<StabilityPoint>& points = stability.*curve.points;
-      cells.push_back(i < points.size() ? three_digits(points[i].value) : "-");
+      const bool exists = i < points.size();
+      cells.push_back(!exists                         ? "-"
+                      : is_reliable(curve, points[i]) ? three_digits(points[i].value)
+                                                      : three_digits(points[i].value) + "?");
+      if (has_interval_in_text(curve)) {
+        cells.push_back(exists ? certainty_text(points[i].certainty) : "-");
+      }
     }
     table.add(std::move(cells));
   }
@@ -194,40 +278,46 @@ Json points_json(const std::vector<StabilityPoint>& points) {
 
 void add_stability(Json& object, const Stability& stability) {
   for (const Size& size : kSizes) object[size.name] = stability.time_error.*size.value;
-  for (const ClockCurve& curve : evaluation::clock_curves())
-    object[curve.id] = points_json(stability.*curve.points);
+  for (const ClockCurve& curve : evaluation::clock_curves()) {
+    const std::vector<StabilityPoint>& points = stability.*curve.points;
+    Json& list = object[curve.id] = points_json(points);
+    if (curve.deviation == Deviation::kMtie) continue;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      add_certainty_json(list[i], points[i].certainty);
+    }
+  }
 }
 
-AnswerText stability_answer(const std::vector<LogStability>& files) {
-  if (files.empty()) return {};
-  const auto largest_te = [](const LogStability& file) {
-    return file.stability.time_error.max_te_ms;
+AnswerText stability_answer(const std::vector<StabilityFinding>& findings) {
+  if (findings.empty()) return {};
+  const auto largest_te = [](const StabilityFinding& finding) {
+    return finding.log.stability.time_error.max_te_ms;
   };
-  const auto worst = std::ranges::max_element(files, {}, largest_te);
-  const evaluation::TimeErrorSummary& size = worst->stability.time_error;
-  AnswerText answer{.lead = files.size() == 1
-                                ? fmt::format("The largest time error of {} is {}.",
-                                              name_of(*worst), time_text(size.max_te_ms))
+  const LogStability& worst = std::ranges::max_element(findings, {}, largest_te)->log;
+  const evaluation::TimeErrorSummary& size = worst.stability.time_error;
+  AnswerText answer{.lead = findings.size() == 1
+                                ? fmt::format("The largest time error of {} is {}.", name_of(worst),
+                                              time_text(size.max_te_ms))
                                 : fmt::format("Of {}, {} has the largest time error: {}.",
-                                              counted(files.size(), "clock"), name_of(*worst),
+                                              counted(findings.size(), "clock"), name_of(worst),
                                               time_text(size.max_te_ms))};
+  answer.add("Limits", limits_text(findings));
   answer.add("Parts",
-             worst->are_summaries
+             worst.are_summaries
                  ? fmt::format("Its RMS is {}.", time_text(size.rms_te_ms))
                  : fmt::format("Its mean is {}, what changes around it {} (RMS).",
                                time_text(size.constant_te_ms), time_text(size.dynamic_te_ms)));
-  for (const LogStability& file : files) {
-    if (file.start) {
-      answer.add("Start", files.size() == 1
-                              ? start_text(file)
-                              : fmt::format("{}: {}", name_of(file), start_text(file)));
-    }
+  for (const StabilityFinding& finding : findings) {
+    if (!finding.log.start) continue;
+    answer.add("Start", findings.size() == 1
+                            ? start_text(finding.log)
+                            : fmt::format("{}: {}", name_of(finding.log), start_text(finding.log)));
   }
   std::int64_t steps = 0;
   std::int64_t gaps = 0;
-  for (const LogStability& file : files) {
-    steps += static_cast<std::int64_t>(file.stability.steps.size());
-    gaps += gaps_of(file);
+  for (const StabilityFinding& finding : findings) {
+    steps += static_cast<std::int64_t>(finding.log.stability.steps.size());
+    gaps += gaps_of(finding.log);
   }
   if (steps + gaps > 0) {
     answer.add("Breaks",
@@ -237,14 +327,19 @@ AnswerText stability_answer(const std::vector<LogStability>& files) {
   return answer;
 }
 
-Document stability_document(const std::vector<LogStability>& files) {
-  Document document{.title = "stability of " + counted(files.size(), "measured clock"),
-                    .head = paragraphs(stability_answer(files))};
-  document.blocks.push_back({.heading = "Time error (TE)", .table = files_table(files)});
-  for (const LogStability& file : files) {
-    Block block{.heading = name_of(file)};
-    if (!file.stability.mtie_ms.empty()) block.table = stability_table(file.stability);
-    block.items = step_items(file.stability);
+Document stability_document(const std::vector<StabilityFinding>& findings) {
+  Document document{.title = "stability of " + counted(findings.size(), "measured clock"),
+                    .head = paragraphs(stability_answer(findings))};
+  document.blocks.push_back({.heading = "Time error (TE)", .table = files_table(findings)});
+  for (const StabilityFinding& finding : findings) {
+    const Stability& stability = finding.log.stability;
+    Block block{.heading = name_of(finding.log)};
+    if (!stability.mtie_ms.empty()) block.table = stability_table(stability);
+    if (!finding.log.are_summaries) block.prose = {percentiles_text(stability.time_error)};
+    for (const MaskVerdict& verdict : finding.verdicts) {
+      block.items.push_back(mask_verdict_text(verdict));
+    }
+    for (std::string& item : step_items(stability)) block.items.push_back(std::move(item));
     document.blocks.push_back(std::move(block));
   }
   document.blocks.push_back(
@@ -254,17 +349,21 @@ Document stability_document(const std::vector<LogStability>& files) {
                  "ADEV, HDEV: overlapping Allan and Hadamard deviation, MDEV: modified Allan "
                  "deviation, without a unit; TDEV: time deviation; MTIE: the largest change of TE "
                  "within tau. None reaches over a gap.",
+                 "Interval: the deviation of the clock, with 95 %, if its noise is the power law "
+                 "that it shows at tau. \"?\": not reliable, of too few independent differences. "
+                 "MTIE has no interval.",
                  "A log has what the program estimates against its own source: an error that both "
                  "share (an asymmetric path) is not in it."}});
   return document;
 }
 
-std::string stability_csv(const std::vector<LogStability>& files) {
-  std::string text = "file,format,quantity,tau_s,value,terms\n";
-  for (const LogStability& file : files) {
+std::string stability_csv(const std::vector<StabilityFinding>& findings) {
+  std::string text = "file,format,quantity,tau_s,value,terms,low,high,noise,reliable\n";
+  for (const StabilityFinding& finding : findings) {
+    const LogStability& file = finding.log;
     const std::string head = csv_cell(name_of(file)) + "," + file.format + ",";
     const auto add = [&](const char* quantity, double value) {
-      text += fmt::format("{}{},,{},\n", head, quantity, csv_cell(value));
+      text += fmt::format("{}{},,{},,,,,\n", head, quantity, csv_cell(value));
     };
     const Stability& stability = file.stability;
     add("first_s", file.first_s);
@@ -280,11 +379,18 @@ std::string stability_csv(const std::vector<LogStability>& files) {
     }
     for (const ClockCurve& curve : evaluation::clock_curves()) {
       for (const StabilityPoint& point : stability.*curve.points) {
-        text += fmt::format("{}{},{},{},{}\n", head, curve.id, csv_cell(point.tau_s),
-                            csv_cell(point.value), point.terms);
+        text +=
+            fmt::format("{}{},{},{},{},{}\n", head, curve.id, csv_cell(point.tau_s),
+                        csv_cell(point.value), point.terms, certainty_csv(curve, point.certainty));
       }
     }
     add("steps", static_cast<double>(stability.steps.size()));
+    for (const MaskVerdict& verdict : finding.verdicts) {
+      const char* const value = verdict.judgement == Judgement::kPasses  ? "1"
+                                : verdict.judgement == Judgement::kFails ? "0"
+                                                                         : "";
+      text += fmt::format("{}{},,{},,,,,\n", head, verdict.mask, value);
+    }
   }
   return text;
 }
@@ -321,11 +427,11 @@ std::string log_series_json(const std::vector<LogSeriesOfFile>& files) {
   return file_text(root);
 }
 
-std::string stability_json(const std::vector<LogStability>& files) {
+std::string stability_json(const std::vector<StabilityFinding>& findings) {
   Json root = new_document();
-  root["answer"] = answer_json(stability_answer(files));
+  root["answer"] = answer_json(stability_answer(findings));
   root["files"] = Json::array();
-  for (const LogStability& file : files) root["files"].push_back(file_json(file));
+  for (const StabilityFinding& finding : findings) root["files"].push_back(file_json(finding));
   return file_text(root);
 }
 

@@ -42,7 +42,8 @@ TEST(Table, FindsTheSeparator) {
 
 TEST(Table, ReadsDecimalCommas) {
   for (const char* separator : {";", "\t", " "}) {
-    const Read found = read_rows(std::string("0,5") + separator + "1,25e-6\n1" + separator + "-2\n");
+    const Read found =
+        read_rows(std::string("0,5") + separator + "1,25e-6\n1" + separator + "-2\n");
     EXPECT_TRUE(found.dialect.decimal_comma) << separator;
     EXPECT_EQ(found.rows, (Rows{{"0.5", "1.25e-6"}, {"1", "-2"}})) << separator;
   }
@@ -64,8 +65,10 @@ TEST(Table, ReadsQuotes) {
 }
 
 TEST(Table, TakesACommentedHeading) {
-  EXPECT_THAT(read_rows("# time_s,offset_ns\n0.0,6.4e1\n").heading, ElementsAre("time_s", "offset_ns"));
-  const Read tum = read_rows("# rgb maps\n# file: own\n# timestamp filename\n1.5 a.png\n2.5 b.png\n");
+  EXPECT_THAT(read_rows("# time_s,offset_ns\n0.0,6.4e1\n").heading,
+              ElementsAre("time_s", "offset_ns"));
+  const Read tum =
+      read_rows("# rgb maps\n# file: own\n# timestamp filename\n1.5 a.png\n2.5 b.png\n");
   EXPECT_THAT(tum.heading, ElementsAre("timestamp", "filename"));
   EXPECT_EQ(tum.rows, (Rows{{"1.5", "a.png"}, {"2.5", "b.png"}}));
   EXPECT_THAT(read_rows("% a comment\n1,2\n// more\n3,4\n").rows, SizeIs(2));
