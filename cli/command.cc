@@ -89,18 +89,17 @@ void check_output(CLI::App& command, CLI::Option& output,
                   const std::vector<CLI::Option*>& outputs) {
   if (output.count() == 0) return;
   const std::string path = output.results().front();
-  std::error_code none;
-  const bool is_folder = std::filesystem::is_directory(path, none);
+  const char* const other_one = output.get_type_name() == "DIR" ? "another folder" : "another file";
   for (CLI::Option* const other : command.get_options({})) {
     if (std::ranges::find(outputs, other) != outputs.end()) continue;
     for (const std::string& input : named_inputs(*other)) {
       if (!is_same_file(path, input)) continue;
-      refuse(output.get_name(), fmt::format("{} is one of the inputs, allowed: another {}", path,
-                                            is_folder ? "folder" : "file"));
+      refuse(output.get_name(),
+             fmt::format("{} is one of the inputs, allowed: {}", path, other_one));
     }
   }
   if (const auto why = reports::irreplaceable(path)) {
-    refuse(output.get_name(), fmt::format("{} {}, allowed: another file", path, *why));
+    refuse(output.get_name(), fmt::format("{} {}, allowed: {}", path, *why, other_one));
   }
 }
 

