@@ -72,7 +72,7 @@ bool has_times_of_day(const TableReader& table, std::size_t position) {
 }
 
 std::optional<StampUnit> unit_by_numbers(const TableReader& table, std::size_t position,
-                                        std::vector<std::string>& notes) {
+                                         std::vector<std::string>& notes) {
   const std::vector<double> numbers = first_numbers(table, position);
   if (numbers.empty()) return std::nullopt;
   const std::string label = quoted_bytes(column_label(table, position));

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "recording/recorded_streams.h"
-#include "recording/table.h"
 #include "recording/stamp_unit.h"
+#include "recording/table.h"
 
 namespace simbench {
 

@@ -60,7 +60,7 @@ constexpr auto kSpellings = std::to_array<UnitSpelling>({
 });
 
 constexpr std::array<StampUnit, 4> kUsualUnits = {kSecondUnit, kMillisecondUnit, kMicrosecondUnit,
-                                                 kNanosecondUnit};
+                                                  kNanosecondUnit};
 
 constexpr auto kFrequencies = std::to_array<UnitSpelling>({
     {"hz", kSecondUnit},
@@ -126,7 +126,7 @@ std::optional<StampUnit> unit_in_brackets(std::string_view heading) {
 }
 
 std::optional<StampUnit> scaled(const StampUnit& unit, std::int64_t numerator,
-                               std::int64_t denominator) {
+                                std::int64_t denominator) {
   __extension__ using Wide = __int128;
   Wide top = static_cast<Wide>(unit.numerator) * numerator;
   Wide bottom = static_cast<Wide>(unit.denominator) * denominator;

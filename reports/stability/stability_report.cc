@@ -188,7 +188,7 @@ bool is_reliable(const ClockCurve& curve, const StabilityPoint& point) {
   return curve.deviation == Deviation::kMtie || (point.certainty && point.certainty->reliable);
 }
 
-std::string certainty_text(const std::optional<Certainty>& certainty) {
+std::string interval_of_point_text(const std::optional<Certainty>& certainty) {
   return certainty ? fmt::format("{:.2g}..{:.2g}", certainty->low, certainty->high) : "-";
 }
 
@@ -260,7 +260,7 @@ Table stability_table(const Stability& stability) {
                       : is_reliable(curve, points[i]) ? three_digits(points[i].value)
                                                       : three_digits(points[i].value) + "?");
       if (has_interval_in_text(curve)) {
-        cells.push_back(exists ? certainty_text(points[i].certainty) : "-");
+        cells.push_back(exists ? interval_of_point_text(points[i].certainty) : "-");
       }
     }
     table.add(std::move(cells));
