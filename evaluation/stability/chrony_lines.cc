@@ -76,9 +76,10 @@ class StatisticsLines final : public LogLines {
     const std::vector<std::string_view> words = words_of(line);
     if (!begins_with_time(words) || words.size() < 4 || !is_real(words[3])) return std::nullopt;
     check_width(words, kStatisticsWords, place);
-    return LogLine{.format = "chrony_statistics",
-                   .name = words[2],
-                   .point = {chrony_time_of(words), finite_of(words[4], "offset", kLargestErrorS, place)}};
+    return LogLine{
+        .format = "chrony_statistics",
+        .name = words[2],
+        .point = {chrony_time_of(words), finite_of(words[4], "offset", kLargestErrorS, place)}};
   }
 };
 
@@ -99,8 +100,9 @@ class MeasurementsLines final : public LogLines {
       ++failed_;
       return std::nullopt;
     }
-    return LogLine{
-        .format = "chrony_measurements", .name = words[2], .point = {chrony_time_of(words), 0 - theta_s}};
+    return LogLine{.format = "chrony_measurements",
+                   .name = words[2],
+                   .point = {chrony_time_of(words), 0 - theta_s}};
   }
 
   std::vector<std::string> notes() const override {
@@ -126,8 +128,9 @@ class RefclocksLines final : public LogLines {
       return std::nullopt;
     }
     const double offset_s = finite_of(words[6], "raw offset", kLargestErrorS, place);
-    return LogLine{
-        .format = "chrony_refclocks", .name = words[2], .point = {chrony_time_of(words), 0 - offset_s}};
+    return LogLine{.format = "chrony_refclocks",
+                   .name = words[2],
+                   .point = {chrony_time_of(words), 0 - offset_s}};
   }
 
   std::vector<std::string> notes() const override {

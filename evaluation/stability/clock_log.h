@@ -63,8 +63,8 @@ inline constexpr std::size_t kMostLogSeries = 1000;
 struct ClockLogOptions {
   std::optional<StampUnit> unit{};       // of a table's errors
   std::optional<StampUnit> time_unit{};  // of its times
-  std::string series{};                 // which, of a file that has several; empty: the only one
-  std::optional<double> interval_s{};   // of a table of one column
+  std::string series{};                  // which, of a file that has several; empty: the only one
+  std::optional<double> interval_s{};    // of a table of one column
   bool frequencies =
       false;            // a table has fractional frequencies: what its errors change by a second
   bool locked = false;  // without the points before the servo locked (linuxptp's s0, s1)

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "recording/number_in.h"
-#include "recording/text_fields.h"
 #include "recording/stamp_unit.h"
+#include "recording/text_fields.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {

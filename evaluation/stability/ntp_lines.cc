@@ -56,7 +56,8 @@ class LoopstatsLines final : public LogLines {
                       words.size()));
     }
     const double offset_s = finite_of(words[2], "offset", kLargestErrorS, place);
-    return LogLine{.format = "loopstats", .point = {statistics_time_of(words, place), 0 - offset_s}};
+    return LogLine{.format = "loopstats",
+                   .point = {statistics_time_of(words, place), 0 - offset_s}};
   }
 };
 
@@ -78,8 +79,9 @@ class PeerstatsLines final : public LogLines {
                       words.size()));
     }
     const double offset_s = finite_of(words[4], "offset", kLargestErrorS, place);
-    return LogLine{
-        .format = "peerstats", .name = words[2], .point = {statistics_time_of(words, place), 0 - offset_s}};
+    return LogLine{.format = "peerstats",
+                   .name = words[2],
+                   .point = {statistics_time_of(words, place), 0 - offset_s}};
   }
 };
 
