@@ -60,11 +60,6 @@ std::string unpacking_text(const std::string& path) {
 
 BagFacts read_bag(const std::string& path, BagSink& sink, const ReadProgress& progress) {
   try {
-    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
-      throw BagError(path +
-                     ": found a pipe, a device or a folder, allowed: a file, since a bag is read "
-                     "from several places");
-    }
     const std::optional<BagFormat> format = bag_format(path);
     if (!format && is_compressed_whole(path)) throw BagError(path + ": " + unpacking_text(path));
     if (!format) {

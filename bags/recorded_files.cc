@@ -197,6 +197,7 @@ RecordedStreams read_recorded_files(const std::vector<std::string>& files,
     before += recording_bytes(files[i]);
   }
   std::vector<RecordedStreams*> of_bags;
+  of_bags.reserve(recordings.size());
   for (RecordedStreams& recording : recordings) of_bags.push_back(&recording);
   tell_apart(of_bags, names);
   RecordedStreams all{csv.take(), csv.notes()};

@@ -3,6 +3,8 @@
 // Memory: a buffer of 16 kB for a file; for compressed bytes 128 kB, and what the format looks back
 // to (LZ4 64 kB, gzip 32 kB, bzip2 4 MB, zstd up to 64 MB, a frame that needs more is refused).
 //
+//   char buffer[8];
+//   const std::uint64_t compressed_size = 512;
 //   FileBytes file("rig.bag");
 //   file.seek(4096);
 //   LimitedBytes chunk(file, compressed_size);

@@ -31,7 +31,9 @@ LineReader::LineReader(std::string path, Pipes pipes)
     : path_(std::move(path)), file_(opened(path_, pipes)), buffer_(kBlock, '\0') {}
 
 LineReader::LineReader(std::string path, std::string_view text)
-    : path_(std::move(path)), buffer_(text), end_(buffer_.size()) {}
+    : path_(std::move(path)), buffer_(text), end_(buffer_.size()) {
+  if (text.starts_with("\xef\xbb\xbf")) begin_ = 3;  // the mark of UTF-8
+}
 
 std::optional<std::string_view> LineReader::next() {
   std::size_t searched = begin_;

@@ -216,7 +216,7 @@ std::optional<StampUnit> heading_unit(std::string_view heading) {
   const std::vector<std::string_view> words = words_of_heading(heading);
   std::optional<StampUnit> only;
   for (const std::string_view word : words) {
-    const bool is_last = word.data() == words.back().data();
+    const bool is_last = words.size() > 1 && word.data() == words.back().data();
     const auto unit = word.size() > 1 || is_last ? unit_of_word(word) : std::nullopt;
     if (!unit) continue;
     if (only) return std::nullopt;  // a rate

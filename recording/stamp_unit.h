@@ -7,8 +7,9 @@
 //   time_in("0.25", *unit_named("us"));   // 250 ns
 //
 // A heading's unit is what stands in brackets, else the only one of its words that is a unit; a
-// unit of one letter must be the last word, and two units are a rate (ns/s). Words end at anything
-// but a letter or a digit, and where small letters end and capitals begin. Capitals do not matter.
+// unit of one letter must be the last of several words, and two units are a rate (ns/s). Words end
+// at anything but a letter or a digit, and where small letters end and capitals begin. Capitals do
+// not matter.
 //
 // Complexity: linear in the text, without allocation but for headings.
 #pragma once

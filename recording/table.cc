@@ -36,6 +36,7 @@ bool is_number_cell(std::string_view cell) {
 
 bool is_decimal_comma(std::string_view cell) {
   if (std::ranges::count(cell, ',') != 1 || cell.find('.') != std::string_view::npos) return false;
+  if (cell.ends_with(',')) return false;
   std::string pointed(cell);
   std::ranges::replace(pointed, ',', '.');
   return is_number_cell(pointed);
@@ -111,7 +112,7 @@ char separator_of(const std::vector<std::string_view>& rows) {
   if (are_times) return TableDialect::kOneColumn;
   if (are_decimal_commas(rows)) return TableDialect::kBlanks;
   char best = TableDialect::kOneColumn;
-  std::size_t most = rows.size() / 2;
+  std::size_t most = (rows.size() - 1) / 2;
   for (const char separator : {'\t', ';', ',', TableDialect::kBlanks}) {
     const Fit fit = fit_of(separator, rows);
     if (fit.rows <= most) continue;
@@ -205,9 +206,9 @@ void TableReader::find_dialect() {
   // A heading may have fewer commas than the rows, so it does not count if there is more.
   std::vector<std::string_view> rows;
   for (const Kept& row : ahead_) rows.push_back(row.text);
-  if (rows.size() > 1) rows.erase(rows.begin());
   if (rows.empty()) return;
-  dialect_.separator = separator_of(rows);
+  dialect_.separator =
+      separator_of(rows.size() == 1 ? rows : std::vector(rows.begin() + 1, rows.end()));
   if (dialect_.separator == ',') return;
   std::size_t commas = 0;
   std::size_t points = 0;
@@ -237,7 +238,9 @@ void TableReader::find_heading() {
     ahead_.pop_front();
     return;
   }
-  if (comments_.empty() || cells.size() < 2) return;
+  if (comments_.empty()) return;
+  // A line above a list of stamps is its heading only if it says so.
+  if (cells.size() < 2 && !comments_.back().starts_with("timestamp")) return;
   std::vector<std::string_view> names;
   split_row(comments_.back(), dialect_.separator, names, unquoted_);
   if (names.size() == cells.size()) heading_.assign(names.begin(), names.end());

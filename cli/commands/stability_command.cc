@@ -22,12 +22,12 @@ constexpr double kShortestIntervalS = 1e-6;
 constexpr double kLongestIntervalS = 1e9;
 
 constexpr const char* kStabilityExamples = R"(
-Takes what other programs have measured, and recognises it by content: tables of time and time error
-(CSV), and the logs of ptp4l, phc2sys, ts2phc, chrony, ntpd, sntp, ntpshmmon, w32tm,
-systemd-timesyncd and ptpd, behind any head (syslog, journalctl, Docker, Kubernetes), compressed or
-not; - is standard input. Gives Allan, modified Allan, Hadamard and time deviation, MTIE and the size
-of the time error, over octaves of tau. Gaps are kept apart, never interpolated; steps are named, and
-a start before the clock was set. docs/files.md has a command for each form.
+Takes what other programs have measured, and recognises it by content: tables of time and time
+error (CSV), and the logs of ptp4l, phc2sys, ts2phc, chrony, ntpd, sntp, ntpshmmon, w32tm,
+systemd-timesyncd and ptpd, behind any head (syslog, journalctl, Docker, Kubernetes), compressed
+or not; - is standard input. Gives Allan, modified Allan, Hadamard and time deviation, MTIE and
+the size of the time error, over octaves of tau. Gaps are kept apart, never interpolated; steps
+are named, and a start before the clock was set. docs/files.md has a command for each form.
 
 Examples:
   simbench stability /var/log/chrony/tracking.log
@@ -112,9 +112,10 @@ int run_stability(const StabilityOptions& options) {
   const std::vector<evaluation::ClockMask> masks = masks_of(options);
   std::vector<reports::StabilityFinding> found;
   for (const std::string& file : options.files) {
-    const evaluation::ClockLog log = evaluation::read_clock_log(file, options.log);
-    reports::StabilityFinding finding{.log = evaluation::stability_of_log(log, options.stability)};
-    if (log.are_summaries() && !masks.empty()) {
+    reports::StabilityFinding finding{
+        .log = evaluation::stability_of_log(evaluation::read_clock_log(file, options.log),
+                                            options.stability)};
+    if (finding.log.are_summaries && !masks.empty()) {
       throw scenarios::InputError(
           file +
           ": found summaries (rms, max), which no limit judges, allowed: a line for each update");
@@ -176,9 +177,9 @@ void add_stability_command(CommandLine& line) {
   command.list("--limit", "LIMIT,...", options->limits,
                "Judge by limits of your own: max_te, cte, te_p2p, p50, p95, p99, p99.9, mtie@TAU,\n"
                "tdev@TAU with a time, adev@TAU, mdev@TAU, hdev@TAU with a number");
-  command.text("--figure", "FILE", options->figure,
-               "Draw ADEV, TDEV and MTIE with their intervals and limits to this file (.svg or\n"
-               ".pdf, by gnuplot)");
+  command.output("--figure", "FILE", options->figure,
+                 "Draw ADEV, TDEV and MTIE with their intervals and limits to this file (.svg or\n"
+                 ".pdf, by gnuplot)");
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.footer(kStabilityExamples);
   command.runs(

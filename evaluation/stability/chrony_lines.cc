@@ -24,13 +24,13 @@ bool is_real(std::string_view word) {
   return word.find_first_of(".e") != std::string_view::npos && number_in<double>(word).has_value();
 }
 
-bool begins_with_time(const std::vector<std::string_view>& words) {
-  return words.size() >= 3 && day_in(words[0]) && time_of_day_in(words[1]);
-}
-
-Microseconds chrony_time_of(const std::vector<std::string_view>& words) {
-  return std::chrono::duration_cast<Microseconds>(day_in(words[0])->time_since_epoch() +
-                                                  *time_of_day_in(words[1]));
+// The time at the beginning of a line.
+std::optional<Microseconds> chrony_time_of(const std::vector<std::string_view>& words) {
+  if (words.size() < 3) return std::nullopt;
+  const auto day = day_in(words[0]);
+  const auto time = day ? time_of_day_in(words[1]) : std::nullopt;
+  if (!time) return std::nullopt;
+  return std::chrono::duration_cast<Microseconds>(day->time_since_epoch() + *time);
 }
 
 // A line that stops early is one of this log, cut.
@@ -45,7 +45,8 @@ class TrackingLines final : public LogLines {
  public:
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
     const std::vector<std::string_view> words = words_of(line);
-    if (!begins_with_time(words) || words.size() < 4 || !number_in<std::int64_t>(words[3])) {
+    const std::optional<Microseconds> time = chrony_time_of(words);
+    if (!time || words.size() < 4 || !number_in<std::int64_t>(words[3])) {
       return std::nullopt;
     }
     if (words.size() > 4 && !number_in<double>(words[4])) return std::nullopt;
@@ -55,31 +56,27 @@ class TrackingLines final : public LogLines {
     }
     const double error_s = finite_of(words[6], "offset", kLargestErrorS, place);
     if (words[7] == "?") {
-      ++unsynchronised_;
-      return std::nullopt;
+      return skip();
     }
-    return LogLine{.format = "chrony_tracking", .point = {chrony_time_of(words), error_s}};
+    return LogLine{.format = "chrony_tracking", .point = {*time, error_s}};
   }
 
   std::vector<std::string> notes() const override {
-    if (unsynchronised_ == 0) return {};
-    return {counted(unsynchronised_, "line") + " of an unsynchronised clock left out"};
+    if (skipped() == 0) return {};
+    return {counted(skipped(), "line") + " of an unsynchronised clock left out"};
   }
-
- private:
-  std::uint64_t unsynchronised_ = 0;
 };
 
 class StatisticsLines final : public LogLines {
  public:
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
     const std::vector<std::string_view> words = words_of(line);
-    if (!begins_with_time(words) || words.size() < 4 || !is_real(words[3])) return std::nullopt;
+    const std::optional<Microseconds> time = chrony_time_of(words);
+    if (!time || words.size() < 4 || !is_real(words[3])) return std::nullopt;
     check_width(words, kStatisticsWords, place);
-    return LogLine{
-        .format = "chrony_statistics",
-        .name = words[2],
-        .point = {chrony_time_of(words), finite_of(words[4], "offset", kLargestErrorS, place)}};
+    return LogLine{.format = "chrony_statistics",
+                   .name = words[2],
+                   .point = {*time, finite_of(words[4], "offset", kLargestErrorS, place)}};
   }
 };
 
@@ -87,8 +84,9 @@ class MeasurementsLines final : public LogLines {
  public:
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
     const std::vector<std::string_view> words = words_of(line);
-    if (!begins_with_time(words) || words.size() < 8 || !is_leap_status(words[3]) ||
-        words[5].size() != 3 || words[6].size() != 3) {
+    const std::optional<Microseconds> time = chrony_time_of(words);
+    if (!time || words.size() < 8 || !is_leap_status(words[3]) || words[5].size() != 3 ||
+        words[6].size() != 3) {
       return std::nullopt;
     }
     check_width(words, kMeasurementsWords, place);
@@ -97,49 +95,39 @@ class MeasurementsLines final : public LogLines {
     if (line.substr(0, static_cast<std::size_t>(words[8].data() - line.data()))
             .find_first_of('0', static_cast<std::size_t>(words[5].data() - line.data())) !=
         std::string_view::npos) {
-      ++failed_;
-      return std::nullopt;
+      return skip();
     }
-    return LogLine{.format = "chrony_measurements",
-                   .name = words[2],
-                   .point = {chrony_time_of(words), 0 - theta_s}};
+    return LogLine{
+        .format = "chrony_measurements", .name = words[2], .point = {*time, 0 - theta_s}};
   }
 
   std::vector<std::string> notes() const override {
-    if (failed_ == 0) return {};
-    return {counted(failed_, "measurement") + " that chronyd's tests refused left out"};
+    if (skipped() == 0) return {};
+    return {counted(skipped(), "measurement") + " that chronyd's tests refused left out"};
   }
-
- private:
-  std::uint64_t failed_ = 0;
 };
 
 class RefclocksLines final : public LogLines {
  public:
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
     const std::vector<std::string_view> words = words_of(line);
-    if (!begins_with_time(words) || words.size() < 6 || !is_leap_status(words[4]) ||
+    const std::optional<Microseconds> time = chrony_time_of(words);
+    if (!time || words.size() < 6 || !is_leap_status(words[4]) ||
         (words[5] != "0" && words[5] != "1" && words[5] != "-")) {
       return std::nullopt;
     }
     check_width(words, kRefclocksWords, place);
     if (words[6] == "-") {
-      ++filtered_;
-      return std::nullopt;
+      return skip();
     }
     const double offset_s = finite_of(words[6], "raw offset", kLargestErrorS, place);
-    return LogLine{.format = "chrony_refclocks",
-                   .name = words[2],
-                   .point = {chrony_time_of(words), 0 - offset_s}};
+    return LogLine{.format = "chrony_refclocks", .name = words[2], .point = {*time, 0 - offset_s}};
   }
 
   std::vector<std::string> notes() const override {
-    if (filtered_ == 0) return {};
-    return {counted(filtered_, "filtered sample") + " left out: the raw ones are taken"};
+    if (skipped() == 0) return {};
+    return {counted(skipped(), "filtered sample") + " left out: the raw ones are taken"};
   }
-
- private:
-  std::uint64_t filtered_ = 0;
 };
 
 // "D5B8E5A1,192.0.2.1,2,1725359542.123456789,system time,last offset,RMS offset ..."
@@ -162,8 +150,7 @@ class ChronycLines final : public LogLines {
     const std::optional<Microseconds> time = microseconds_of(cells[3]);
     if (!time) place.fail("reference time", cells[3], "seconds since 1970");
     if (cells[13] != "Normal" && !cells[13].ends_with(" second")) {
-      ++unsynchronised_;
-      return std::nullopt;
+      return skip();
     }
     // Between two updates chronyc repeats the last one.
     if (last_ == *time) return std::nullopt;
@@ -173,12 +160,11 @@ class ChronycLines final : public LogLines {
   }
 
   std::vector<std::string> notes() const override {
-    if (unsynchronised_ == 0) return {};
-    return {counted(unsynchronised_, "line") + " of an unsynchronised clock left out"};
+    if (skipped() == 0) return {};
+    return {counted(skipped(), "line") + " of an unsynchronised clock left out"};
   }
 
  private:
-  std::uint64_t unsynchronised_ = 0;
   std::optional<Microseconds> last_{};
 };
 

@@ -99,8 +99,8 @@ class LogReading {
 
   ClockLog take() {
     if (table_) return std::move(*table_);
-    if (set_.empty()) place_().fail("the file ends without a time error");
-    ClockLog log = set_.take(place_(), absolute_);
+    if (set_.empty()) current_place().fail("the file ends without a time error");
+    ClockLog log = set_.take(current_place(), absolute_);
     std::ranges::move(notes_, std::back_inserter(log.notes));
     return log;
   }
@@ -108,7 +108,7 @@ class LogReading {
   std::vector<ClockLogSeries> list() { return set_.empty() ? table_series_ : set_.list(); }
 
  private:
-  LogPlace place_() const { return {path_, lines_.line()}; }
+  LogPlace current_place() const { return {path_, lines_.line()}; }
 
   [[noreturn]] void fail_empty() const {
     if (!lines_.torn()) LogPlace{path_, 1}.fail("the file is empty, allowed: a log of a clock");
@@ -150,9 +150,11 @@ void LogReading::read_lines(const LogFormat& format) {
   while (const std::optional<std::string_view> next = lines_.next()) {
     const std::string_view line = without_end(*next);
     const LogPlace place{path_, lines_.line()};
+    const std::uint64_t skipped = lines->skipped();
     if (const std::optional<LogLine> found = lines->read(line, place)) {
       set_.add(*found, place);
-    } else if (!line.empty() && !set_.empty() && !lines->is_expected(line) && ++others == 1) {
+    } else if (!line.empty() && !set_.empty() && lines->skipped() == skipped &&
+               !lines->is_expected(line) && ++others == 1) {
       first_other = place.line;
     }
   }

@@ -1,19 +1,20 @@
 // Measured time errors of a clock from the files that other programs write, recognised by content:
 //
-//   linuxptp     what ptp4l, phc2sys and ts2phc print or log: "ptp4l[5374018.735]: master offset
-//   -23
-//                s2 freq ...", nanoseconds, positive: the clock is ahead of its source; also behind
-//                the heads of syslog, journalctl (short, short-iso, cat, json, export), Docker,
-//                Kubernetes, and of both at once; and their summaries ("rms 67 max 73 freq ...")
-//   chrony       tracking.log (7th column, positive: fast), statistics.log (5th, positive: fast),
-//                measurements.log (12th, positive: slow), refclocks.log (raw offset, positive:
-//                slow), and `chronyc -c tracking` in a loop (last offset, positive: fast)
-//   ntpd         loopstats (3rd column), peerstats (5th), sntp's output, positive: slow; ntpshmmon
-//                (the clock minus the reference's time)
-//   others       w32tm /stripchart, positive: slow; systemd-timesyncd's debug lines, positive:
-//   slow;
-//                ptpd's statistics (offset from master, positive: fast)
-//   csv          tables (recording/table.h) of time and time error; see below
+// - linuxptp: what ptp4l, phc2sys and ts2phc print or log ("ptp4l[5374018.735]: master offset -23
+// s2
+//   freq ..."), nanoseconds, positive: the clock is ahead of its source. Also behind the heads of
+//   syslog, journalctl (short, short-iso, cat, json, export), Docker, Kubernetes, and of both at
+//   once, and their summaries ("rms 67 max 73 freq ...").
+// - chrony: tracking.log (7th column, positive: fast), statistics.log (5th, positive: fast),
+//   measurements.log (12th, positive: slow), refclocks.log (raw offset, positive: slow), and
+//   `chronyc -c tracking` in a loop (last offset, positive: fast).
+// - ntpd: loopstats (3rd column), peerstats (5th), sntp's output, positive: slow. ntpshmmon: the
+// clock
+//   minus the reference's time.
+// - others: w32tm /stripchart, positive: slow. Debug lines of systemd-timesyncd, positive: slow.
+// The
+//   statistics of ptpd: offset from master, positive: fast.
+// - csv: tables (recording/table.h) of time and time error, see below.
 //
 // The format is that of most lines: what is no measurement (banners, changes of state, other
 // programs) is skipped, and counted in the notes. Signs are turned so that positive is a clock that

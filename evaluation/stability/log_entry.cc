@@ -7,10 +7,15 @@ namespace {
 
 // The text of a member of a JSON object on one line, into `text`; false if it has none. What JSON
 // escapes in such texts are quotes, backslashes and line ends.
-bool take_member(std::string_view line, std::string_view quoted_key, std::string& text) {
-  const std::size_t key = line.find(quoted_key);
-  if (key == std::string_view::npos) return false;
-  std::size_t at = line.find_first_not_of(" :", key + quoted_key.size());
+bool take_member(std::string_view line, std::string_view key, std::string& text) {
+  // By its letters: quotes are frequent, and a search for one that begins so is slow.
+  std::size_t found = line.find(key);
+  const auto is_quoted = [&] {
+    return found > 0 && line[found - 1] == '"' && line.substr(found + key.size()).starts_with('"');
+  };
+  while (found != std::string_view::npos && !is_quoted()) found = line.find(key, found + 1);
+  if (found == std::string_view::npos) return false;
+  std::size_t at = line.find_first_not_of(" :", found + key.size() + 1);
   if (at == std::string_view::npos || line[at] != '"') return false;
   text.clear();
   for (++at; at < line.size() && line[at] != '"'; ++at) {
@@ -34,13 +39,13 @@ std::optional<LogEntry> JournalText::read(std::string_view line) {
 }
 
 std::optional<LogEntry> JournalText::read_json(std::string_view line) {
-  if (!take_member(line, "\"MESSAGE\"", message_)) {
-    if (!take_member(line, "\"log\"", message_)) return std::nullopt;
+  if (!take_member(line, "MESSAGE", message_)) {
+    if (!take_member(line, "log", message_)) return std::nullopt;
     return LogEntry{.message = message_};
   }
-  if (!take_member(line, "\"_HOSTNAME\"", host_)) host_.clear();
-  if (!take_member(line, "\"SYSLOG_IDENTIFIER\"", program_)) program_.clear();
-  if (!take_member(line, "\"_PID\"", process_)) process_.clear();
+  if (!take_member(line, "_HOSTNAME", host_)) host_.clear();
+  if (!take_member(line, "SYSLOG_IDENTIFIER", program_)) program_.clear();
+  if (!take_member(line, "_PID", process_)) process_.clear();
   return LogEntry{host_, program_, process_, message_};
 }
 

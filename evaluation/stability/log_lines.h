@@ -49,12 +49,23 @@ class LogLines {
   virtual ~LogLines() = default;
   // Nothing for a line that is no measurement. Throws for one that is a damaged one.
   virtual std::optional<LogLine> read(std::string_view line, const LogPlace& place) = 0;
-  // What was skipped and may be missed.
+  // What was skipped and may be missed, and how many lines that were of this log.
   virtual std::vector<std::string> notes() const { return {}; }
+  std::uint64_t skipped() const { return skipped_; }
   // Times count from 1970.
   virtual bool absolute() const { return true; }
   // A line that is no measurement and needs no mention: a rule, a heading, a change of state.
   virtual bool is_expected(std::string_view line) const;
+
+ protected:
+  // Counts a line of this log that has no measurement.
+  std::optional<LogLine> skip() {
+    ++skipped_;
+    return std::nullopt;
+  }
+
+ private:
+  std::uint64_t skipped_ = 0;
 };
 
 struct LogFormat {

@@ -165,7 +165,7 @@ LogSeriesSet::Series& LogSeriesSet::chosen(const LogPlace& place) {
   std::vector<std::string> names;
   for (const Series& series : series_) {
     if (names.size() == kNamedSeries) {
-      names.push_back("...");
+      names.emplace_back("...");
       break;
     }
     names.push_back(quoted_bytes(series.label));

@@ -40,8 +40,20 @@ std::vector<double> distances_of(const LogPoints& log) {
   return distances;
 }
 
-// Points of one time as their mean; how many were so.
-LogPoints without_equal_times(const LogPoints& log, std::uint64_t& equal) {
+// How many points have the time of the one before.
+std::uint64_t equal_times(const LogPoints& log) {
+  std::uint64_t equal = 0;
+  const std::vector<std::size_t> bounds = bounds_of(log);
+  for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
+    for (std::size_t i = bounds[segment] + 1; i < bounds[segment + 1]; ++i) {
+      if (log.points[i].time == log.points[i - 1].time) ++equal;
+    }
+  }
+  return equal;
+}
+
+// Points of one time as their mean.
+LogPoints without_equal_times(const LogPoints& log) {
   LogPoints found;
   found.points.reserve(log.points.size());
   const std::vector<std::size_t> bounds = bounds_of(log);
@@ -52,7 +64,6 @@ LogPoints without_equal_times(const LogPoints& log, std::uint64_t& equal) {
       const ClockLogPoint& point = log.points[i];
       if (i > bounds[segment] && point.time == found.points.back().time) {
         ++count;
-        ++equal;
         double& mean_s = found.points.back().error_s;
         mean_s += (point.error_s - mean_s) / count;
       } else {
@@ -71,32 +82,36 @@ class Grid {
 
   void begin_segment(Microseconds first) {
     // The time between two segments is unknown: it counts as one interval.
+    commit();
     if (!even_.series.pieces.empty()) shift_s_ = last_s_ + interval_s_ - seconds_of(first);
     fresh_ = true;
   }
 
+  // The point of those in the window that is nearest to one interval continues the piece.
   void take(const ClockLogPoint& point) {
     const double time_s = seconds_of(point.time) + shift_s_;
-    std::vector<TimeErrorPiece>& pieces = even_.series.pieces;
+    if (waiting_) {
+      const double now_s = std::abs(time_s - last_s_ - interval_s_);
+      const double before_s = std::abs(waiting_time_s_ - last_s_ - interval_s_);
+      if (now_s < before_s) {
+        ++even_.left_out;
+        wait_for_nearer(point, time_s);
+        return;
+      }
+      commit();
+    }
     const double since_s = time_s - last_s_;
     if (!fresh_ && since_s < (1 - share_) * interval_s_) {
       ++even_.left_out;
-      return;
-    }
-    if (!fresh_ && since_s <= (1 + share_) * interval_s_) {
-      neighbours_s_ += since_s;
-      ++even_.neighbours;
+    } else if (!fresh_ && since_s <= (1 + share_) * interval_s_) {
+      wait_for_nearer(point, time_s);
     } else {
-      if (!fresh_) even_.longest_gap_s = std::max(even_.longest_gap_s, since_s);
-      if (pieces.empty()) first_s_ = time_s;
-      pieces.push_back({.start_s = time_s - first_s_});
+      begin_piece(point, time_s);
     }
-    fresh_ = false;
-    pieces.back().x_s.push_back(point.error_s);
-    last_s_ = time_s;
   }
 
   EvenSeries finish() {
+    commit();
     even_.series.interval_s = interval_s_;
     if (even_.neighbours > 0) {
       // To the microsecond of the stamps, so that a regular log has its plain interval.
@@ -107,9 +122,34 @@ class Grid {
   }
 
  private:
+  void wait_for_nearer(const ClockLogPoint& point, double time_s) {
+    waiting_ = point.error_s;
+    waiting_time_s_ = time_s;
+  }
+
+  void commit() {
+    if (!waiting_) return;
+    neighbours_s_ += waiting_time_s_ - last_s_;
+    ++even_.neighbours;
+    even_.series.pieces.back().x_s.push_back(*waiting_);
+    last_s_ = waiting_time_s_;
+    waiting_.reset();
+  }
+
+  void begin_piece(const ClockLogPoint& point, double time_s) {
+    std::vector<TimeErrorPiece>& pieces = even_.series.pieces;
+    if (!fresh_) even_.longest_gap_s = std::max(even_.longest_gap_s, time_s - last_s_);
+    if (pieces.empty()) first_s_ = time_s;
+    pieces.push_back({.start_s = time_s - first_s_, .x_s = {point.error_s}});
+    last_s_ = time_s;
+    fresh_ = false;
+  }
+
   double interval_s_;
   double share_;
   EvenSeries even_{};
+  std::optional<double> waiting_{};  // the error of a point that a nearer one may replace
+  double waiting_time_s_ = 0;
   double neighbours_s_ = 0;
   double first_s_ = 0;
   double last_s_ = 0;
@@ -161,7 +201,7 @@ EvenSeries found_grid(const LogPoints& log, std::string& how) {
   }
   double most_s = covered_s(plain);
   for (const EvenSeries& candidate : candidates) most_s = std::max(most_s, covered_s(candidate));
-  if (covered_s(plain) >= kNearlyAll * most_s) return plain;
+  if (covered_s(plain) >= most_s / 2) return plain;
   for (EvenSeries& candidate : candidates) {
     if (covered_s(candidate) < kNearlyAll * most_s) continue;
     how = fmt::format("distances of points go from {:.6g} to {:.6g} s: taken at {:.6g} s",
@@ -246,7 +286,8 @@ void drop_first(LogPoints& log, std::size_t count) {
 }
 
 // The points of the asked stretch.
-LogPoints asked_points(const ClockLog& log, const LogStabilityOptions& options) {
+LogPoints asked_points(ClockLog& log, const LogStabilityOptions& options) {
+  if (!options.from && !options.until) return {std::move(log.points), std::move(log.segments)};
   LogPoints found;
   const double first_s = seconds_of(log.points.front().time);
   const auto on_scale = [&](const LogTime& time) {
@@ -326,7 +367,7 @@ EvenSeries evenly_spaced(const LogPoints& log, std::optional<double> interval_s,
   return grid.finish();
 }
 
-LogStability stability_of_log(const ClockLog& log, const LogStabilityOptions& options) {
+LogStability stability_of_log(ClockLog log, const LogStabilityOptions& options) {
   LogStability found{.file = log.path,
                      .format = log.format,
                      .series = log.series,
@@ -352,11 +393,12 @@ LogStability stability_of_log(const ClockLog& log, const LogStabilityOptions& op
   found.first_s = seconds_of(asked.points.front().time);
   if (options.remove_frequency) remove_line(asked, found);
   const TimeErrorSummary size = size_of(asked.points);
-  std::uint64_t equal = 0;
-  const LogPoints single = without_equal_times(asked, equal);
+  const std::uint64_t equal = equal_times(asked);
+  if (equal > 0) asked = without_equal_times(asked);
   std::string how;
-  const EvenSeries even =
-      options.interval_s ? evenly_spaced(single, options.interval_s) : found_grid(single, how);
+  EvenSeries even =
+      options.interval_s ? evenly_spaced(asked, options.interval_s) : found_grid(asked, how);
+  asked = {};
   found.left_out = even.left_out;
   found.longest_gap_s = even.longest_gap_s;
   found.stability = stability_of(even.series);

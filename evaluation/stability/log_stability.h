@@ -4,7 +4,7 @@
 // All points count in the time error: its size, percentiles and steps. Deviations need even
 // intervals. The interval is the median distance of neighbouring points, or the one that is stated.
 // From the last point taken, the next one is that which comes one interval later, to within
-// kGridShare of it; points that come earlier are left out of the deviations, and where none comes
+// kGridShare of it and nearest to that; others are left out of the deviations, and where none comes
 // there is a gap: a new piece begins with the next point. Pauses thus separate pieces, and nothing
 // is interpolated or moved. Points of one time count as their mean. The interval of the result is
 // the mean distance of neighbours within the pieces.
@@ -12,7 +12,8 @@
 // Where fewer than kEvenShare of the neighbours are one interval apart and none is stated, the log
 // is uneven, and a note says how it was taken: distances that vary (a poll with jitter) to within
 // kUnevenShare of the interval, as if they were even; of distances that differ by octaves (a poll
-// that grows) the shortest one that covers nearly as much of the log as any.
+// that grows), where another covers twice as much of the log as the median, the shortest one that
+// covers nearly as much as any.
 //
 // The start of a log often is one of a clock that is not set yet. The first points are such a start
 // if they lie farther than kStartScatters times the scatter of the second half from its median,
@@ -98,6 +99,6 @@ struct LogStability {
   Stability stability{};                     // times of steps: since the first point
   std::vector<std::string> notes{};          // "FILE: ..."
 };
-LogStability stability_of_log(const ClockLog& log, const LogStabilityOptions& options);
+LogStability stability_of_log(ClockLog log, const LogStabilityOptions& options);
 
 }  // namespace simbench::evaluation

@@ -55,7 +55,7 @@ enum class LimitedQuantity : std::uint8_t {
   kP50,
   kP95,
   kP99,
-  kP99_9,
+  kP999,
   kAdev,
   kMdev,
   kHdev,

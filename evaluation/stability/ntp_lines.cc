@@ -135,8 +135,7 @@ class W32tmLines final : public LogLines {
       value.remove_prefix(at + 2);
     }
     if (value.starts_with("error")) {
-      ++failed_;
-      return std::nullopt;
+      return skip();
     }
     value = value.substr(0, value.find('s'));
     if (!value.starts_with('+') && !value.starts_with('-')) return std::nullopt;
@@ -147,15 +146,14 @@ class W32tmLines final : public LogLines {
   }
 
   std::vector<std::string> notes() const override {
-    if (failed_ == 0) return {};
-    return {counted(failed_, "sample") + " that failed left out"};
+    if (skipped() == 0) return {};
+    return {counted(skipped(), "sample") + " that failed left out"};
   }
   bool absolute() const override { return false; }
 
  private:
   std::optional<Nanoseconds> last_{};
   Nanoseconds days_{};
-  std::uint64_t failed_ = 0;
 };
 
 // "Sep 03 10:32:22 host systemd-timesyncd[412]: interval/delta/delay/jitter/drift

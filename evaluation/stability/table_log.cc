@@ -344,7 +344,8 @@ void TableLog::add_notes() {
                      counted(missing_, "row"), first_missing_));
   }
   if (table_.torn()) {
-    note("the last line has no line end and may be cut; it was left out");
+    log_.notes.push_back(table_.lines().place() +
+                         ": the last line has no line end and may be cut; it was left out");
   }
   if (!log_.segments.empty()) {
     note(fmt::format("times go back {} (a restart, or a clock that was set back): each is a gap",

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -243,7 +244,10 @@ class FilesPage : public ProgramTest {};
 
 TEST_F(FilesPage, EveryCommandRuns) {
   for (const auto& files : {linuxptp_files(), daemon_files(), table_files(), camera_files()}) {
-    for (const auto& [name, content] : files) file(name, content);
+    for (const auto& [name, content] : files) {
+      std::filesystem::create_directories((folder() / name).parent_path());
+      file(name, content);
+    }
   }
   const std::vector<std::vector<std::string>> commands = commands_of_tables();
   EXPECT_GT(commands.size(), 40U);

@@ -28,6 +28,7 @@ provide() {
     liblz4-dev) prove "$1/include/lz4frame.h" ;;
     libzstd-dev) prove "$1/include/zstd.h" ;;
     libbz2-dev) prove "$1/include/bzlib.h" ;;
+    zlib1g-dev) prove "$1/include/zlib.h" ;;
     libcli11-dev) prove "$1/include/CLI/CLI.hpp" ;;
     libfmt-dev) prove "$1/include/fmt/core.h" ;;
     libembree-dev) prove "$1/include/embree3/rtcore.h" ;;

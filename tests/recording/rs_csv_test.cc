@@ -224,12 +224,12 @@ TEST(RsCsv, ColumnsThatAreNotThereAreNamed) {
   EXPECT_THAT(message_of("sensor=s,sensor=t,camera=a", ""), HasSubstr("several sensor=COLUMN"));
   EXPECT_THAT(message_of("sensor=s:us,arrival=a:us", "s,a\n1,2\n1x,2\n"),
               HasSubstr("log.csv:3: s: found '1x'"));
-  EXPECT_THAT(message_of("sensor=s,arrival=a", "s,a\n1,2\n1,2\n"),
-              HasSubstr("found no unit of the stamps of column 's', allowed: one behind its name"));
+  EXPECT_THAT(message_of("sensor=x,arrival=y", "x,y\n1,2\n1,2\n"),
+              HasSubstr("found no unit of the stamps of column 'x', allowed: one behind its name"));
   // Without them, the message says how.
   CsvRecordingReader usual;
   try {
-    usual.read_text("s,a\n1,2\n", "log.csv");
+    usual.read_text("x,y\n1,2\n", "log.csv");
     ADD_FAILURE() << "accepted";
   } catch (const CsvError& error) {
     EXPECT_THAT(error.what(), HasSubstr("--columns sensor=COLUMN:UNIT,arrival=COLUMN:UNIT"));

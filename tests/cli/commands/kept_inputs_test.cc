@@ -41,6 +41,7 @@ const std::vector<Words>& writing_commands() {
       {"record", "--scenario", "6cam_2host_30fps", "--output"},
       {"record", "--scenario", "6cam_2host_30fps", "--output", "new", "--program-log"},
       {"replay", "in.csv", "--output"},
+      {"stability", "in.csv", "--figure"},
       {"diagnose", "in.csv", "--html"},
       {"export", "in.csv", "--output"},
       {"fit", "in.csv", "--output"},
