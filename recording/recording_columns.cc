@@ -153,9 +153,10 @@ RecordingColumns RecordingColumns::parse(const std::string& text) {
                    kUnitsText);
   };
   RecordingColumns parsed;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string_view part = std::string_view(text).substr(begin, end - begin);
+  const std::string_view all = text;
+  for (std::size_t begin = 0; begin <= all.size();) {
+    const std::size_t end = std::min(all.find(',', begin), all.size());
+    const std::string_view part = all.substr(begin, end - begin);
     begin = end + 1;
     const std::size_t equals = part.find('=');
     const auto* const field =
@@ -223,6 +224,7 @@ ResolvedColumns found_columns(const TableReader& table, std::vector<std::string>
   }
   if (stamps.size() != 1) {
     std::vector<std::string> choices;
+    choices.reserve(stamps.size());
     for (const std::size_t i : stamps) choices.push_back(printable_name(column_label(table, i)));
     const std::string proposal =
         choices.size() == 2

@@ -270,10 +270,12 @@ void CsvRecordingReader::File::check_width(const Cells& cells, std::size_t fewes
 void CsvRecordingReader::File::read_row(const Cells& cells) {
   const std::string_view host = has(CsvField::kHost) ? cell(cells, CsvField::kHost) : name_;
   for (const ResolvedColumns::Stamps& sensor : columns_.sensors) {
-    const bool named = columns_.sensors.size() > 1;
-    const std::string_view camera = has(CsvField::kCamera) ? cell(cells, CsvField::kCamera)
-                                    : named                ? std::string_view(sensor.name)
-                                                           : std::string_view(name_);
+    std::string_view camera = name_;
+    if (has(CsvField::kCamera)) {
+      camera = cell(cells, CsvField::kCamera);
+    } else if (columns_.sensors.size() > 1) {
+      camera = sensor.name;
+    }
     if (camera.empty() || host.empty() ||
         (has(CsvField::kStream) && cell(cells, CsvField::kStream).empty())) {
       place_.fail("found an empty cell, allowed: the name of a stream, camera or host");

@@ -255,7 +255,7 @@ std::optional<StampUnit> frame_rate_unit(double distance) {
 
 std::optional<Nanoseconds> time_in(std::string_view text, const StampUnit& unit) {
   __extension__ using Wide = unsigned __int128;
-  constexpr auto kMost = static_cast<Wide>(std::numeric_limits<std::int64_t>::max());
+  constexpr auto kMost = static_cast<Wide>(kLargestTime.count());
   std::optional<Decimal> number = decimal_of(text);
   if (!number) return std::nullopt;
   if (number->mantissa == 0) return Nanoseconds(0);

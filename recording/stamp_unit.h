@@ -54,8 +54,11 @@ std::optional<StampUnit> epoch_unit(double number);
 // there is none.
 std::optional<StampUnit> frame_rate_unit(double distance);
 
+// 292 years: 64 bits of nanoseconds, with room to round.
+inline constexpr Nanoseconds kLargestTime{9'223'372'036'000'000'000};
+
 // A decimal number with sign, point and exponent as these have them; nothing for any other text,
-// and beyond what 64 bits of nanoseconds hold (292 years). Digits below a nanosecond are rounded.
+// and beyond kLargestTime either way. Digits below a nanosecond are rounded.
 std::optional<Nanoseconds> time_in(std::string_view text, const StampUnit& unit);
 
 }  // namespace simbench

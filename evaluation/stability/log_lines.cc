@@ -107,7 +107,7 @@ double finite_of(std::string_view text, const char* what, double largest, const 
 std::optional<Microseconds> microseconds_of(std::string_view seconds) {
   // A second has as many microseconds as a millisecond nanoseconds.
   const std::optional<Nanoseconds> found = time_in(seconds, kMillisecondUnit);
-  if (!found) return std::nullopt;
+  if (!found || std::abs(found->count()) > kLargestLogTime.count()) return std::nullopt;
   return Microseconds(found->count());
 }
 

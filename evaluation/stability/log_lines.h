@@ -80,7 +80,9 @@ std::optional<std::string> known_other_log(std::string_view line);
 std::vector<std::string_view> words_of(std::string_view line);
 // A finite number within `largest` either way.
 double finite_of(std::string_view text, const char* what, double largest, const LogPlace& place);
-// Seconds, to the microsecond.
+// 12,000 years either way, so that differences of times fit, too.
+inline constexpr Microseconds kLargestLogTime{400'000'000'000'000'000};
+// Seconds up to that, to the microsecond.
 std::optional<Microseconds> microseconds_of(std::string_view seconds);
 
 std::unique_ptr<LogLines> chrony_tracking_lines();

@@ -113,7 +113,12 @@ class NtpshmmonLines final : public LogLines {
     if (words.size() < 5 || words[0] != "sample") return std::nullopt;
     const std::optional<Nanoseconds> clock = time_in(words[3], kSecondUnit);
     const std::optional<Nanoseconds> reference = time_in(words[4], kSecondUnit);
-    if (!clock || !reference) place.fail("time", clock ? words[4] : words[3], "seconds since 1970");
+    const auto good = [](const std::optional<Nanoseconds>& time) {
+      return time && std::abs(time->count()) <= kLargestTime.count() / 2;
+    };
+    if (!good(clock) || !good(reference)) {
+      place.fail("time", good(clock) ? words[4] : words[3], "seconds since 1970");
+    }
     return LogLine{.format = "ntpshmmon",
                    .name = words[1],
                    .point = {microseconds(*reference),
@@ -142,7 +147,7 @@ class W32tmLines final : public LogLines {
     if (last_ && *time < *last_ - kDay / 2) days_ += kDay;
     last_ = *time;
     const double offset_s = finite_of(value, "offset", kLargestErrorS, place);
-    return LogLine{.format = "w32tm", .point = {microseconds(days_ + *time), 0 - offset_s}};
+    return LogLine{.format = "w32tm", .point = {days_ + microseconds(*time), 0 - offset_s}};
   }
 
   std::vector<std::string> notes() const override {
@@ -153,7 +158,7 @@ class W32tmLines final : public LogLines {
 
  private:
   std::optional<Nanoseconds> last_{};
-  Nanoseconds days_{};
+  Microseconds days_{};
 };
 
 // "Sep 03 10:32:22 host systemd-timesyncd[412]: interval/delta/delay/jitter/drift
@@ -191,10 +196,12 @@ class TimesyncdLines final : public LogLines {
     const auto number = static_cast<unsigned>(month - kMonths.begin()) + 1;
     if (number < month_) ++year_;
     month_ = number;
+    if (year_ > kLastYear) return std::nullopt;
     const std::chrono::sys_days date = std::chrono::year(year_) / static_cast<int>(number) / *day;
     return microseconds(date.time_since_epoch() + *time);
   }
 
+  static constexpr int kLastYear = 2200;
   int year_ = 1970;
   unsigned month_ = 0;
 };

@@ -259,7 +259,11 @@ void TableLog::read_row(const std::vector<std::string_view>& row) {
   if (columns_.time != kNoColumn) {
     time = time_of(row[columns_.time]);
   } else {
-    time = Microseconds(std::llround(1e6 * *options_.interval_s * static_cast<double>(rows_ - 1)));
+    const double time_us = 1e6 * *options_.interval_s * static_cast<double>(rows_ - 1);
+    if (time_us > static_cast<double>(kLargestLogTime.count())) {
+      place().fail("found a time beyond 12,000 years, allowed: less");
+    }
+    time = Microseconds(std::llround(time_us));
   }
   const double seconds = unit_ ? unit_->seconds() : 1;
   const double value =
@@ -334,6 +338,10 @@ void TableLog::sum_frequencies() {
   for (std::size_t i = 0; i <= last; ++i) {
     const double y = std::exchange(points[i].error_s, error_s);
     error_s += y * 1e-6 * static_cast<double>(distance(i).count());
+    if (!(std::abs(error_s) <= kLargestErrorS)) {
+      place().fail(fmt::format("found frequencies that sum up to more than {:g} s, allowed: less",
+                               kLargestErrorS));
+    }
   }
   points.back().error_s = error_s;
 }
