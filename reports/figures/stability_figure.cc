@@ -64,7 +64,8 @@ FigureSeries limit_line(const evaluation::MaskLimit& limit, std::string label, i
                                                                  : 1;
     for (int i = 0; i <= steps; ++i) {
       const double tau_s =
-          steps == 0 ? from_s : from_s * std::pow(segment.to_s / from_s, double(i) / steps);
+          steps == 0 ? from_s
+                     : from_s * std::pow(segment.to_s / from_s, static_cast<double>(i) / steps);
       line.add(tau_s, segment.base + segment.factor * std::pow(tau_s, segment.exponent));
     }
   }
