@@ -134,16 +134,16 @@ class RefclocksLines final : public LogLines {
 class ChronycLines final : public LogLines {
  public:
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
-    constexpr std::size_t kCells = 14;
+    constexpr std::size_t kChronycCells = 14;
     std::vector<std::string_view> cells;
-    for (std::size_t begin = 0; begin <= line.size() && cells.size() <= kCells;) {
+    for (std::size_t begin = 0; begin <= line.size() && cells.size() <= kChronycCells;) {
       const std::size_t end = std::min(line.find(',', begin), line.size());
       cells.push_back(line.substr(begin, end - begin));
       begin = end + 1;
     }
     // A time may stand before each line of the loop.
     if (!cells.empty()) cells[0] = cells[0].substr(cells[0].find_last_of(" \t") + 1);
-    if (cells.size() != kCells || cells[0].size() != 8 ||
+    if (cells.size() != kChronycCells || cells[0].size() != 8 ||
         cells[0].find_first_not_of("0123456789ABCDEF") != std::string_view::npos) {
       return std::nullopt;
     }
