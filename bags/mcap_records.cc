@@ -55,7 +55,7 @@ std::string publisher_in(std::string_view metadata) {
 // The checksum of all before the record DataEnd, where that stands before the summary.
 void read_data_end(FileBytes& file, std::uint64_t next, McapSummary& summary) {
   constexpr std::uint64_t kSize = kMcapRecordHead + 4;
-  if (next < kMcapMagicSize + kSize) return;
+  if (next < kMcapMagicSize + kSize || next > file.size()) return;
   std::array<char, kSize> bytes{};
   file.seek(next - kSize);
   if (!file.read_exactly(bytes.data(), bytes.size())) return;
