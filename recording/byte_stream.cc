@@ -287,6 +287,7 @@ std::uint64_t LimitedBytes::skip(std::uint64_t count) {
 
 std::size_t MemoryBytes::read(char* to, std::size_t most) {
   const std::size_t size = std::min(most, bytes_.size());
+  if (size == 0) return 0;
   std::memcpy(to, bytes_.data(), size);
   bytes_.remove_prefix(size);
   return size;
