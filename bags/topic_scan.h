@@ -41,8 +41,8 @@ struct TopicScan {
 
   // Mean, by the log times; 0 with fewer than two messages.
   double rate_hz() const;
-  // The same topic in another file of the recording. Exact where the files do not overlap in time;
-  // else the longest gap is that within a file.
+  // Adds the topic of another file of the recording. It is exact where the files do not overlap in
+  // time; else the longest gap is that within a file.
   void append(const TopicScan& next);
 };
 

@@ -37,7 +37,7 @@ struct ClockCauses {
   std::uint64_t seeds = 0;           // of which values are the means
   std::vector<std::string> tried{};  // empty: nothing was asked
   std::vector<ClockCause> found{};   // the one with the largest effect first
-  // Those that this world does not let one take away: "the time between ...: found 0.1, allowed
+  // Causes that this world does not let one take away: "the time between ...: found 0.1, allowed
   // ...".
   std::vector<std::string> refused{};
 };

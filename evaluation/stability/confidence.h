@@ -45,7 +45,7 @@ inline constexpr double kMostLags = 100;
 // A deviation at m intervals of one piece of so many points, which must have a term.
 double degrees_of_freedom(std::int64_t points, Deviation deviation, std::int64_t m,
                           NoiseType noise);
-// Those of all pieces together; one of them must have a term.
+// The degrees of freedom of all pieces together; one piece must have a term.
 double degrees_of_freedom(const TimeErrorSeries& series, Deviation deviation, std::int64_t m,
                           NoiseType noise);
 

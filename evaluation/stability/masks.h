@@ -99,7 +99,7 @@ struct ClockMask {
   std::vector<MaskLimit> limits{};
 };
 
-// Those of the list above.
+// The masks of the list above; mask_named() throws for another name.
 std::span<const ClockMask> masks();
 const ClockMask& mask_named(const std::string& id);
 

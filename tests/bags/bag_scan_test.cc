@@ -260,7 +260,7 @@ TEST(BagScanTest, AMessageThatStandsTwiceCountsOnce) {
       writer.add_message(left, stamp_of(i), image(i, "cam", static_cast<std::uint32_t>(i)));
     }
   }
-  // The same time, but no copies: another number, another size, another content.
+  // Messages of one time that are no copies: another number, another size, another content.
   writer.add_message(left, stamp_of(9), image(9, "cam", 10));
   writer.add_message(left, stamp_of(9), image(9, "cam", 10) + "x");
   writer.add_message(left, stamp_of(9),

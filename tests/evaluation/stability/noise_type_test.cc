@@ -38,7 +38,7 @@ std::vector<double> phase_of(NoiseType noise, std::uint32_t seed, std::size_t po
   }
 }
 
-// The same in pieces of so many points, with a gap behind each.
+// The series in pieces of so many points, with a gap behind each.
 TimeErrorSeries in_pieces(const std::vector<double>& x_s, std::size_t length) {
   TimeErrorSeries series{.interval_s = 1};
   for (std::size_t i = 0; i + length < x_s.size(); i += length + 3) {
