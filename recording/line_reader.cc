@@ -11,6 +11,7 @@ namespace simbench {
 namespace {
 
 constexpr std::size_t kBlock = 64U << 10U;
+constexpr std::size_t kLeastLines = 4'000'000;  // of a compressed file; others have a byte for each
 constexpr std::size_t kLongestLine = 32U << 20U;  // clock errors of a million hosts fit
 
 [[noreturn]] void fail_to_read_lines(const std::string& path, const FileError& error) {
@@ -43,6 +44,12 @@ std::optional<std::string_view> LineReader::next() {
       const std::string_view line(buffer_.data() + begin_, stop - begin_);
       begin_ = stop + 1;
       ++line_;
+      if (file_ && line_ > kLeastLines && line_ - kLeastLines > file_->bytes_read()) {
+        throw LineError(
+            fmt::format("{}: more lines than a file of its size may have ({} and one a "
+                        "byte); unpack it",
+                        place(), kLeastLines));
+      }
       return line;
     }
     const std::size_t length = end_ - begin_;

@@ -2,6 +2,9 @@
 // of one line. A last line without its line end is no line: its writer died (torn()). A read error
 // is never taken for the end.
 //
+// A compressed file may have four million lines and one for each of its bytes, so that a small one
+// cannot become more than memory holds.
+//
 // Errors: LineError, for a file that cannot be read ("FILE: cannot be read: ...") and a line that
 // is too long ("FILE:LINE: ...").
 //

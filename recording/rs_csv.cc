@@ -21,6 +21,7 @@ namespace {
 
 constexpr const char* kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)";
 constexpr std::size_t kHeaderLines = 200;  // the header stands in the first ones
+constexpr std::size_t kHeaderBytes = std::size_t{1} << 20;
 
 // What rs-data-collect calls its columns, by field; the last two are optional.
 constexpr std::array<std::string_view, kCsvFields> kUsualNames = {
@@ -182,9 +183,11 @@ void CsvRecordingReader::File::read(LineReader lines) {
 
 // By its header, or by what stands before it.
 bool CsvRecordingReader::File::is_usual(LineReader& lines) const {
-  for (std::size_t i = 0; i < kHeaderLines; ++i) {
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < kHeaderLines && bytes < kHeaderBytes; ++i) {
     const std::optional<std::string_view> line = lines.next();
     if (!line) return false;
+    bytes += line->size();
     if (is_preamble(*line)) return true;
     std::deque<std::string> unquoted;
     if (usual_positions(cells_at_commas(*line, unquoted), {place_.path, lines.line()})) return true;

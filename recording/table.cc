@@ -16,6 +16,7 @@ namespace simbench {
 namespace {
 
 constexpr std::size_t kRowsAhead = 100;
+constexpr std::size_t kBytesAhead = std::size_t{4} << 20;
 constexpr std::size_t kMostComments = 1000;
 constexpr std::string_view kTableBlanks = " \t\r";
 
@@ -187,10 +188,12 @@ TableReader::TableReader(LineReader lines) : lines_(std::move(lines)) {
 
 // Keeps the first rows, and the comments before them.
 void TableReader::look_ahead() {
-  while (ahead_.size() < kRowsAhead) {
+  std::size_t bytes = 0;
+  while (ahead_.size() < kRowsAhead && bytes < kBytesAhead) {
     const std::optional<std::string_view> line = lines_.next();
     if (!line) return;
     const std::string_view text = without_blanks(*line);
+    bytes += text.size();
     if (text.empty()) continue;
     const std::size_t mark = comment_mark(text);
     if (mark == 0) {

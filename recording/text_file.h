@@ -2,7 +2,8 @@
 // bzip2, LZ4, each by its first bytes and not by its name), with a byte order mark, and in UTF-16,
 // as PowerShell writes it. "-" is standard input.
 //
-// A file of another kind is refused by what it is ("a Matroska video"). Half a surrogate pair
+// A compressed file may become 64 MiB and 128 bytes for each of its own. A file of another kind is
+// refused by what it is ("a Matroska video"). Half a surrogate pair
 // becomes U+FFFD.
 //
 // Errors: FileError, with the reason alone, at the beginning or where the file is damaged.

@@ -33,12 +33,9 @@ std::optional<Microseconds> chrony_time_of(const std::vector<std::string_view>& 
   return std::chrono::duration_cast<Microseconds>(day->time_since_epoch() + *time);
 }
 
-// A line that stops early is one of this log, cut.
-void check_width(const std::vector<std::string_view>& words, std::size_t fewest,
-                 const LogPlace& place) {
-  if (words.size() >= fewest) return;
-  place.fail(fmt::format("found {} columns, allowed: at least {}; is the line complete?",
-                         words.size(), fewest));
+void check_chrony_width(const std::vector<std::string_view>& words, std::size_t fewest,
+                        const LogPlace& place) {
+  check_width(words, fewest, fmt::format("at least {}", fewest), place);
 }
 
 class TrackingLines final : public LogLines {
@@ -50,7 +47,7 @@ class TrackingLines final : public LogLines {
       return std::nullopt;
     }
     if (words.size() > 4 && !number_in<double>(words[4])) return std::nullopt;
-    check_width(words, kTrackingWords, place);
+    check_chrony_width(words, kTrackingWords, place);
     if (!is_leap_status(words[7])) {
       place.fail("leap status", words[7], "N, +, - or ? in the 8th column of tracking.log");
     }
@@ -73,7 +70,7 @@ class StatisticsLines final : public LogLines {
     const std::vector<std::string_view> words = words_of(line);
     const std::optional<Microseconds> time = chrony_time_of(words);
     if (!time || words.size() < 4 || !is_real(words[3])) return std::nullopt;
-    check_width(words, kStatisticsWords, place);
+    check_chrony_width(words, kStatisticsWords, place);
     return LogLine{.format = "chrony_statistics",
                    .name = words[2],
                    .point = {*time, finite_of(words[4], "offset", kLargestErrorS, place)}};
@@ -89,7 +86,7 @@ class MeasurementsLines final : public LogLines {
         words[6].size() != 3) {
       return std::nullopt;
     }
-    check_width(words, kMeasurementsWords, place);
+    check_chrony_width(words, kMeasurementsWords, place);
     const double theta_s = finite_of(words[11], "offset", kLargestErrorS, place);
     // A failed test (0) is no measurement that chronyd used.
     if (line.substr(0, static_cast<std::size_t>(words[8].data() - line.data()))
@@ -116,7 +113,7 @@ class RefclocksLines final : public LogLines {
         (words[5] != "0" && words[5] != "1" && words[5] != "-")) {
       return std::nullopt;
     }
-    check_width(words, kRefclocksWords, place);
+    check_chrony_width(words, kRefclocksWords, place);
     if (words[6] == "-") {
       return skip();
     }

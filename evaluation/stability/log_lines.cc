@@ -96,6 +96,13 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
+void check_width(const std::vector<std::string_view>& words, std::size_t fewest,
+                 const std::string& allowed, const LogPlace& place) {
+  if (words.size() >= fewest) return;
+  place.fail(
+      fmt::format("found {} columns, allowed: {}; is the line complete?", words.size(), allowed));
+}
+
 double finite_of(std::string_view text, const char* what, double largest, const LogPlace& place) {
   std::string_view digits = text;
   if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);

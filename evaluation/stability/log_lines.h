@@ -78,6 +78,9 @@ std::optional<std::string> known_other_log(std::string_view line);
 
 // For the readers of the formats.
 std::vector<std::string_view> words_of(std::string_view line);
+// Refuses a line that stops early: `allowed` is how many columns its log has.
+void check_width(const std::vector<std::string_view>& words, std::size_t fewest,
+                 const std::string& allowed, const LogPlace& place);
 // A finite number within `largest` either way.
 double finite_of(std::string_view text, const char* what, double largest, const LogPlace& place);
 // 12,000 years either way, so that differences of times fit, too.

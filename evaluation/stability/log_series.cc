@@ -39,17 +39,14 @@ bool put_in_order(ClockLog& log) {
 
 void add_segment_notes(ClockLog& log, bool absolute) {
   if (log.segments.empty()) return;
-  const std::string times = counted(log.segments.size(), "time");
   if (absolute && !log.are_summaries() && put_in_order(log)) {
-    log.segments.clear();
     log.notes.push_back(
         fmt::format("{}: times go back {}, and the parts do not overlap: put in order of time",
-                    log.path, times));
+                    log.path, counted(log.segments.size(), "time")));
+    log.segments.clear();
     return;
   }
-  log.notes.push_back(
-      fmt::format("{}: times go back {} (a restart, or a clock that was set back): each is a gap",
-                  log.path, times));
+  log.notes.push_back(segments_note(log.path, log.segments.size()));
 }
 
 }  // namespace
@@ -207,6 +204,12 @@ ClockLog LogSeriesSet::take(const LogPlace& place, bool absolute) {
         options_.locked ? "left out" : "among those taken; --locked leaves them out"));
   }
   return log;
+}
+
+std::string segments_note(const std::string& path, std::size_t segments) {
+  return fmt::format(
+      "{}: times go back {} (a restart, or a clock that was set back): each is a gap", path,
+      counted(segments, "time"));
 }
 
 }  // namespace simbench::evaluation

@@ -66,4 +66,7 @@ class LogSeriesSet {
   bool joined_ = false;
 };
 
+// What is said of a file whose times go back so often: "FILE: ...".
+std::string segments_note(const std::string& path, std::size_t segments);
+
 }  // namespace simbench::evaluation

@@ -40,6 +40,28 @@ std::vector<double> distances_of(const LogPoints& log) {
   return distances;
 }
 
+// Seconds since the first point, on a scale on which a restart, which takes nobody knows how long,
+// takes `restart_s`.
+std::vector<double> times_of(const LogPoints& log, double restart_s) {
+  std::vector<double> times;
+  times.reserve(log.points.size());
+  const std::vector<std::size_t> bounds = bounds_of(log);
+  for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
+    const Microseconds first = log.points[bounds[segment]].time;
+    const double begin_s = segment == 0 ? 0 : times.back() + restart_s;
+    for (std::size_t i = bounds[segment]; i < bounds[segment + 1]; ++i) {
+      times.push_back(begin_s + seconds_of(log.points[i].time - first));
+    }
+  }
+  return times;
+}
+
+// Times where a restart takes as long as points are apart.
+std::vector<double> times_of(const LogPoints& log) {
+  const std::vector<double> distances = distances_of(log);
+  return times_of(log, distances.empty() ? 0 : median(distances));
+}
+
 // How many points have the time of the one before.
 std::uint64_t equal_times(const LogPoints& log) {
   std::uint64_t equal = 0;
@@ -80,22 +102,20 @@ class Grid {
  public:
   Grid(double interval_s, double share) : interval_s_(interval_s), share_(share) {}
 
-  void begin_segment(Microseconds first) {
-    // The time between two segments is unknown: it counts as one interval.
+  // A piece ends where a segment does.
+  void begin_segment() {
     commit();
-    if (!even_.series.pieces.empty()) shift_s_ = last_s_ + interval_s_ - seconds_of(first);
     fresh_ = true;
   }
 
   // The point of those in the window that is nearest to one interval continues the piece.
-  void take(const ClockLogPoint& point) {
-    const double time_s = seconds_of(point.time) + shift_s_;
+  void take(double time_s, double error_s) {
     if (waiting_) {
       const double now_s = std::abs(time_s - last_s_ - interval_s_);
       const double before_s = std::abs(waiting_time_s_ - last_s_ - interval_s_);
       if (now_s < before_s) {
         ++even_.left_out;
-        wait_for_nearer(point, time_s);
+        wait_for_nearer(time_s, error_s);
         return;
       }
       commit();
@@ -104,9 +124,9 @@ class Grid {
     if (!fresh_ && since_s < (1 - share_) * interval_s_) {
       ++even_.left_out;
     } else if (!fresh_ && since_s <= (1 + share_) * interval_s_) {
-      wait_for_nearer(point, time_s);
+      wait_for_nearer(time_s, error_s);
     } else {
-      begin_piece(point, time_s);
+      begin_piece(time_s, error_s);
     }
   }
 
@@ -122,8 +142,8 @@ class Grid {
   }
 
  private:
-  void wait_for_nearer(const ClockLogPoint& point, double time_s) {
-    waiting_ = point.error_s;
+  void wait_for_nearer(double time_s, double error_s) {
+    waiting_ = error_s;
     waiting_time_s_ = time_s;
   }
 
@@ -136,11 +156,9 @@ class Grid {
     waiting_.reset();
   }
 
-  void begin_piece(const ClockLogPoint& point, double time_s) {
-    std::vector<TimeErrorPiece>& pieces = even_.series.pieces;
+  void begin_piece(double time_s, double error_s) {
     if (!fresh_) even_.longest_gap_s = std::max(even_.longest_gap_s, time_s - last_s_);
-    if (pieces.empty()) first_s_ = time_s;
-    pieces.push_back({.start_s = time_s - first_s_, .x_s = {point.error_s}});
+    even_.series.pieces.push_back({.start_s = time_s, .x_s = {error_s}});
     last_s_ = time_s;
     fresh_ = false;
   }
@@ -151,9 +169,7 @@ class Grid {
   std::optional<double> waiting_{};  // the error of a point that a nearer one may replace
   double waiting_time_s_ = 0;
   double neighbours_s_ = 0;
-  double first_s_ = 0;
   double last_s_ = 0;
-  double shift_s_ = 0;
   bool fresh_ = true;
 };
 
@@ -285,44 +301,55 @@ void drop_first(LogPoints& log, std::size_t count) {
   for (std::size_t& begin : log.segments) begin -= count;
 }
 
-// The points of the asked stretch.
-LogPoints asked_points(ClockLog& log, const LogStabilityOptions& options) {
-  if (!options.from && !options.until) return {std::move(log.points), std::move(log.segments)};
-  LogPoints found;
-  const double first_s = seconds_of(log.points.front().time);
-  const auto on_scale = [&](const LogTime& time) {
-    return time.time_s + (time.since_first ? first_s : 0);
+// Keeps the asked stretch alone, with the largest errors of summaries.
+void keep_asked(const LogStabilityOptions& options, LogPoints& log, std::vector<double>& largest_s,
+                const std::string& path) {
+  if (!options.from && !options.until) return;
+  const std::vector<double> since_first = times_of(log);
+  const auto time_on_scale = [&](const LogTime& asked, std::size_t i) {
+    return asked.since_first ? since_first[i] : seconds_of(log.points[i].time);
   };
-  std::size_t segment = 0;
-  bool begins = false;
-  for (std::size_t i = 0; i < log.points.size(); ++i) {
-    if (segment < log.segments.size() && log.segments[segment] == i) {
-      ++segment;
-      begins = !found.points.empty();
+  LogPoints kept;
+  std::vector<double> kept_largest;
+  const std::vector<std::size_t> bounds = bounds_of(log);
+  for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
+    const std::size_t before = kept.points.size();
+    for (std::size_t i = bounds[segment]; i < bounds[segment + 1]; ++i) {
+      if (options.from && time_on_scale(*options.from, i) < options.from->time_s) continue;
+      if (options.until && time_on_scale(*options.until, i) > options.until->time_s) continue;
+      kept.points.push_back(log.points[i]);
+      if (!largest_s.empty()) kept_largest.push_back(largest_s[i]);
     }
-    const double time_s = seconds_of(log.points[i].time);
-    if (options.from && time_s < on_scale(*options.from)) continue;
-    if (options.until && time_s > on_scale(*options.until)) continue;
-    if (std::exchange(begins, false)) found.segments.push_back(found.points.size());
-    found.points.push_back(log.points[i]);
+    if (before > 0 && kept.points.size() > before) kept.segments.push_back(before);
   }
-  if (found.points.empty()) {
+  if (kept.points.empty()) {
     throw scenarios::InputError(
         fmt::format("{}: found no time error in the asked time, allowed: from 0 to {:.9g} s after "
-                    "the first, or "
-                    "times of the log's own scale",
-                    log.path, seconds_of(log.points.back().time) - first_s));
+                    "the first, or times of the log's own scale",
+                    path, since_first.back()));
   }
-  return found;
+  log = std::move(kept);
+  largest_s = std::move(kept_largest);
+}
+
+// Finds the start of a clock that was not set yet, and drops it on request.
+void find_start(const LogStabilityOptions& options, LogPoints& log, LogStability& found) {
+  const std::size_t start = start_of(log.points);
+  if (start == 0) return;
+  const std::span<const ClockLogPoint> all = log.points;
+  found.start = {.points = static_cast<std::int64_t>(start),
+                 .until_s = times_of(log)[start],
+                 .largest_ms = size_of(all.first(start)).max_te_ms,
+                 .settled = size_of(all.subspan(start))};
+  found.settled = options.settle;
+  if (options.settle) drop_first(log, start);
 }
 
 void remove_line(LogPoints& log, LogStability& found) {
-  std::vector<double> times;
+  const std::vector<double> times = times_of(log);
   std::vector<double> errors;
-  for (const ClockLogPoint& point : log.points) {
-    times.push_back(seconds_of(point.time - log.points.front().time));
-    errors.push_back(point.error_s);
-  }
+  errors.reserve(times.size());
+  for (const ClockLogPoint& point : log.points) errors.push_back(point.error_s);
   const FittedLine line = fit_line(times, errors);
   if (!std::isfinite(line.slope)) return;
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -332,24 +359,24 @@ void remove_line(LogPoints& log, LogStability& found) {
 }
 
 // The size of a log of summaries: their maxima, and the root of their mean squares.
-LogStability stability_of_summaries(const ClockLog& log, LogStability found) {
+LogStability stability_of_summaries(const LogPoints& log, const std::vector<double>& largest_s,
+                                    LogStability found) {
   double squares = 0;
   for (const ClockLogPoint& point : log.points) squares += point.error_s * point.error_s;
+  const std::vector<double> distances = distances_of(log);
   found.are_summaries = true;
   found.stability.points = found.samples;
-  found.stability.interval_s =
-      log.points.size() > 1 ? median(distances_of({log.points, log.segments})) : 0;
+  found.stability.interval_s = distances.empty() ? 0 : median(distances);
   found.stability.pieces = static_cast<std::int64_t>(log.segments.size()) + 1;
-  found.stability.time_error.max_te_ms = 1e3 * *std::ranges::max_element(log.largest_s);
+  found.stability.time_error.max_te_ms = 1e3 * *std::ranges::max_element(largest_s);
   found.stability.time_error.rms_te_ms =
       1e3 * std::sqrt(squares / static_cast<double>(log.points.size()));
-  found.notes.push_back(fmt::format(
-      "{}: its lines are summaries (rms, max), which have no sign and no order: only the largest "
-      "and "
+  found.notes.push_back(
+      found.file +
+      ": its lines are summaries (rms, max), which have no sign and no order: only the largest and "
       "the RMS time error exist. For the rest each update must be logged: ptp4l does that where "
       "summary_interval does not exceed logSyncInterval (-3 for 8 messages a second), phc2sys with "
-      "-u 0",
-      log.path));
+      "-u 0");
   return found;
 }
 
@@ -359,44 +386,37 @@ EvenSeries evenly_spaced(const LogPoints& log, std::optional<double> interval_s,
   const double nominal_s = interval_s ? *interval_s : median(distances_of(log));
   SIMBENCH_ASSERT(nominal_s > 0, "points of one time have no interval");
   Grid grid(nominal_s, share);
+  const std::vector<double> times = times_of(log, nominal_s);
   const std::vector<std::size_t> bounds = bounds_of(log);
   for (std::size_t segment = 0; segment + 1 < bounds.size(); ++segment) {
-    grid.begin_segment(log.points[bounds[segment]].time);
-    for (std::size_t i = bounds[segment]; i < bounds[segment + 1]; ++i) grid.take(log.points[i]);
+    grid.begin_segment();
+    for (std::size_t i = bounds[segment]; i < bounds[segment + 1]; ++i) {
+      grid.take(times[i], log.points[i].error_s);
+    }
   }
   return grid.finish();
 }
 
 LogStability stability_of_log(ClockLog log, const LogStabilityOptions& options) {
-  LogStability found{.file = log.path,
-                     .format = log.format,
-                     .series = log.series,
-                     .first_s = seconds_of(log.points.front().time),
-                     .samples = static_cast<std::int64_t>(log.points.size()),
-                     .notes = log.notes};
-  if (log.are_summaries()) return stability_of_summaries(log, std::move(found));
-  LogPoints asked = asked_points(log, options);
-  if (const std::size_t start = start_of(asked.points); start > 0) {
-    const std::span<const ClockLogPoint> all = asked.points;
-    found.start = {.points = static_cast<std::int64_t>(start),
-                   .until_s = seconds_of(asked.points[start].time - asked.points.front().time),
-                   .largest_ms = size_of(all.first(start)).max_te_ms,
-                   .settled = size_of(all.subspan(start))};
-    found.settled = options.settle;
-    if (options.settle) drop_first(asked, start);
-  }
+  LogStability found{
+      .file = log.path, .format = log.format, .series = log.series, .notes = log.notes};
+  const bool summaries = log.are_summaries();
+  LogPoints asked{std::move(log.points), std::move(log.segments)};
+  keep_asked(options, asked, log.largest_s, log.path);
+  if (!summaries) find_start(options, asked, found);
+  found.samples = static_cast<std::int64_t>(asked.points.size());
+  found.first_s = seconds_of(asked.points.front().time);
+  if (summaries) return stability_of_summaries(asked, log.largest_s, std::move(found));
   if (distances_of(asked).empty()) {
     throw scenarios::InputError(fmt::format(
         "{}: found a single time error, allowed: two or more of different times", log.path));
   }
-  found.samples = static_cast<std::int64_t>(asked.points.size());
-  found.first_s = seconds_of(asked.points.front().time);
   if (options.remove_frequency) remove_line(asked, found);
   const TimeErrorSummary size = size_of(asked.points);
   const std::uint64_t equal = equal_times(asked);
   if (equal > 0) asked = without_equal_times(asked);
   std::string how;
-  EvenSeries even =
+  const EvenSeries even =
       options.interval_s ? evenly_spaced(asked, options.interval_s) : found_grid(asked, how);
   asked = {};
   found.left_out = even.left_out;

@@ -19,7 +19,8 @@
 // if they lie farther than kStartScatters times the scatter of the second half from its median,
 // until kSettledPoints in order do not. The result says how it is with and without.
 //
-// A log of summaries has no signs: only the largest and the RMS time error exist.
+// A log of summaries has no signs: only the largest and the RMS time error exist, and no start is
+// found.
 //
 // Errors: scenarios::InputError for a log of a single point, or none in the asked time. Complexity:
 // O(N log N).
@@ -62,7 +63,8 @@ struct EvenSeries {
 EvenSeries evenly_spaced(const LogPoints& log, std::optional<double> interval_s,
                          double share = kGridShare);
 
-// A time in a log: seconds since its first point, or on its own scale.
+// A time in a log: seconds since its first point, where a restart takes as long as points are
+// apart, or on its own scale.
 struct LogTime {
   double time_s = 0;
   bool since_first = true;

@@ -143,7 +143,7 @@ std::optional<double> seconds_in(std::string_view text) {
 
 // One of the limits that --limit states.
 struct LimitText {
-  const std::string& text;
+  std::string_view text;
 
   [[noreturn]] void refuse(std::string_view what, std::string_view found,
                            const std::string& allowed) const {
@@ -164,15 +164,15 @@ struct LimitText {
   }
 };
 
-MaskLimit own_limit(const std::string& text) {
+MaskLimit own_limit(std::string_view text) {
   const LimitText limit{text};
   const std::size_t equals = text.find('=');
-  const std::string_view before = std::string_view(text).substr(0, equals);
+  const std::string_view before = text.substr(0, equals);
   const std::size_t at = before.find('@');
   const std::string_view name = before.substr(0, at);
   const auto known = std::ranges::find(kQuantities, name, &QuantityFacts::option);
   if (known == std::end(kQuantities)) limit.refuse("name", name, option_names());
-  if (equals == std::string::npos) limit.refuse("limit", text, text + "=VALUE");
+  if (equals == std::string::npos) limit.refuse("limit", text, fmt::format("{}=VALUE", text));
   if (known->has_tau() != (at != std::string_view::npos)) {
     limit.refuse(
         "limit", before,
@@ -182,7 +182,7 @@ MaskLimit own_limit(const std::string& text) {
   if (known->has_tau()) {
     segment.from_s = segment.to_s = limit.seconds("tau", before.substr(at + 1), "10s");
   }
-  const std::string_view value = std::string_view(text).substr(equals + 1);
+  const std::string_view value = text.substr(equals + 1);
   segment.base =
       known->is_time() ? 1e3 * limit.seconds("value", value, "100ns") : limit.number(value);
   return {.label = known->label,

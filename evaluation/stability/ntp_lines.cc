@@ -49,12 +49,7 @@ class LoopstatsLines final : public LogLines {
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
     const std::vector<std::string_view> words = words_of(line);
     if (!begins_with_day(words) || words.size() > 7) return std::nullopt;
-    if (words.size() < 5) {
-      place.fail(
-          fmt::format("found {} columns, allowed: 5 to 7, as loopstats has; is the line "
-                      "complete?",
-                      words.size()));
-    }
+    check_width(words, 5, "5 to 7, as loopstats has", place);
     const double offset_s = finite_of(words[2], "offset", kLargestErrorS, place);
     return LogLine{.format = "loopstats",
                    .point = {statistics_time_of(words, place), 0 - offset_s}};
@@ -72,12 +67,7 @@ class PeerstatsLines final : public LogLines {
         words[3].find_first_not_of("0123456789abcdef") == std::string_view::npos &&
         (!number_in<double>(words[2]) || words.size() >= 8);
     if (!has_source) return std::nullopt;
-    if (words.size() < 7) {
-      place.fail(
-          fmt::format("found {} columns, allowed: 7 or 8, as peerstats has; is the line "
-                      "complete?",
-                      words.size()));
-    }
+    check_width(words, 7, "7 or 8, as peerstats has", place);
     const double offset_s = finite_of(words[4], "offset", kLargestErrorS, place);
     return LogLine{.format = "peerstats",
                    .name = words[2],

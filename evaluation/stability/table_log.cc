@@ -356,8 +356,7 @@ void TableLog::add_notes() {
                          ": the last line has no line end and may be cut; it was left out");
   }
   if (!log_.segments.empty()) {
-    note(fmt::format("times go back {} (a restart, or a clock that was set back): each is a gap",
-                     counted(log_.segments.size(), "time")));
+    log_.notes.push_back(segments_note(log_.path, log_.segments.size()));
   }
 }
 

@@ -1,9 +1,5 @@
 #include "tests/bags/bag_writers.h"
 
-#include <bzlib.h>
-#include <lz4frame.h>
-#include <zstd.h>
-
 #include <boost/crc.hpp>
 #include <stdexcept>
 #include <utility>
@@ -39,30 +35,6 @@ std::string ros1_header(std::uint32_t sequence, std::uint32_t s, std::uint32_t n
 std::string cdr_header(std::uint32_t s, std::uint32_t ns, std::string_view frame) {
   const std::string text = std::string(frame) + '\0';
   return std::string("\0\1\0\0", 4) + bytes_of(s, 4) + bytes_of(ns, 4) + length_and(text);
-}
-
-std::string deflated(std::string_view compression, std::string_view plain) {
-  if (compression.empty()) return std::string(plain);
-  std::string out;
-  if (compression == "lz4") {
-    out.resize(LZ4F_compressFrameBound(plain.size(), nullptr));
-    out.resize(LZ4F_compressFrame(out.data(), out.size(), plain.data(), plain.size(), nullptr));
-  } else if (compression == "zstd") {
-    out.resize(ZSTD_compressBound(plain.size()));
-    out.resize(ZSTD_compress(out.data(), out.size(), plain.data(), plain.size(), 1));
-  } else if (compression == "bz2") {
-    auto size = static_cast<unsigned>(plain.size() + plain.size() / 100 + 600);
-    out.resize(size);
-    std::string copy(plain);
-    if (BZ2_bzBuffToBuffCompress(out.data(), &size, copy.data(), static_cast<unsigned>(copy.size()),
-                                 1, 0, 0) != BZ_OK) {
-      throw std::runtime_error("bzip2 does not compress");
-    }
-    out.resize(size);
-  } else {
-    return std::string(plain);  // a name that no reader knows
-  }
-  return out;
 }
 
 std::string mcap_record(std::uint8_t op, std::string_view content) {
@@ -198,6 +170,16 @@ void KeptBag::on_message(const BagMessage& message) {
   if (message.topic >= topics.size()) throw std::logic_error("a message before its topic");
   messages.push_back(
       {message.topic, message.log_time.count(), message.size, std::string(message.head)});
+}
+
+std::string bag_refusal(const std::string& path) {
+  KeptBag bag;
+  try {
+    read_bag(path, bag);
+  } catch (const BagError& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
 }  // namespace simbench::bags

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bags/bag.h"
+#include "tests/deflated.h"
 
 namespace simbench::bags {
 
@@ -28,8 +29,8 @@ std::string ros1_header(std::uint32_t sequence, std::uint32_t s, std::uint32_t n
                         std::string_view frame);
 std::string cdr_header(std::uint32_t s, std::uint32_t ns, std::string_view frame);
 
-// A whole frame. `compression`: "lz4", "zstd", "bz2", or "" for the bytes themselves.
-std::string deflated(std::string_view compression, std::string_view plain);
+// Why read_bag() refuses a file; "accepted" if it does not.
+std::string bag_refusal(const std::string& path);
 
 struct McapOptions {
   std::string compression{};

@@ -11,7 +11,10 @@ namespace simbench::bags {
 namespace {
 
 const std::vector<std::pair<Compression, std::string>> kCompressions = {
-    {Compression::kLz4, "lz4"}, {Compression::kZstd, "zstd"}, {Compression::kBzip2, "bz2"}};
+    {Compression::kLz4, "lz4"},
+    {Compression::kZstd, "zstd"},
+    {Compression::kBzip2, "bz2"},
+    {Compression::kGzip, "gzip"}};
 
 std::string mixed_text(std::size_t size, unsigned seed) {
   std::mt19937 random(seed);

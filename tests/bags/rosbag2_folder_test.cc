@@ -70,16 +70,6 @@ TEST(Rosbag2Folder, AFileThatIsNamedTwiceIsReadOnce) {
                                  HasSubstr("again.db3: stands twice")));
 }
 
-std::string bag_refusal(const std::string& path) {
-  KeptBag bag;
-  try {
-    read_bag(path, bag);
-  } catch (const BagError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 // A pipe that nobody writes would be waited for.
 TEST(Rosbag2Folder, PipesAndDevicesAreRefused) {
   const ScratchFolder folder;

@@ -1,7 +1,6 @@
 // Every command of docs/files.md, on a small file of the form that it is for.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <zlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "tests/cli/program.h"
+#include "tests/deflated.h"
 
 namespace simbench {
 namespace {
@@ -131,21 +131,6 @@ std::map<std::string, std::string> daemon_files() {
   };
 }
 
-std::string gzipped(const std::string& text) {
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  std::string plain = text;
-  std::string packed(text.size() + 1000, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(plain.data());
-  stream.avail_in = static_cast<unsigned>(plain.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<unsigned>(packed.size());
-  deflate(&stream, Z_FINISH);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  return packed;
-}
-
 std::string utf16(const std::string& ascii) {
   std::string bytes = "\xff\xfe";
   for (const char c : ascii) bytes.append({c, '\0'});
@@ -175,7 +160,7 @@ std::map<std::string, std::string> table_files() {
                           },
                           "# time_s,offset_ns\n")},
       {"utf16.csv", utf16(errors)},
-      {"errors.csv.gz", gzipped(errors)},
+      {"errors.csv.gz", deflated("gzip", errors)},
       {"wide.csv", rows("{},{},7,8", "time,offset_ns,freq_ppb,delay_ns\n")},
       {"phase.txt", repeated([](int i) { return fmt::format("{:e}", 1e-9 * offset_ns(i)); })},
       {"frequency.txt", repeated([](int i) { return fmt::format("{:e}", 1e-9 * offset_ns(i)); })},

@@ -1,53 +1,19 @@
 #include "recording/text_file.h"
 
-#include <bzlib.h>
 #include <gmock/gmock.h>
-#include <zlib.h>
-#include <zstd.h>
 
 #include <string>
 #include <vector>
 
 #include "recording/line_reader.h"
 #include "scenarios/input_file.h"
+#include "tests/deflated.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench {
 namespace {
 
 using testing::HasSubstr;
-
-std::string gzipped(const std::string& text) {
-  z_stream stream{};
-  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
-  std::string packed(text.size() + 1000, '\0');
-  std::string plain = text;
-  stream.next_in = reinterpret_cast<Bytef*>(plain.data());
-  stream.avail_in = static_cast<unsigned>(plain.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<unsigned>(packed.size());
-  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  return packed;
-}
-
-std::string zstd(const std::string& text) {
-  std::string packed(ZSTD_compressBound(text.size()), '\0');
-  packed.resize(ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), 3));
-  return packed;
-}
-
-std::string bzip2(const std::string& text) {
-  std::string plain = text;
-  std::string packed(plain.size() + 1000, '\0');
-  auto size = static_cast<unsigned>(packed.size());
-  EXPECT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size, plain.data(),
-                                     static_cast<unsigned>(plain.size()), 9, 0, 0),
-            BZ_OK);
-  packed.resize(size);
-  return packed;
-}
 
 std::string utf16(const std::u16string& text, bool big_endian, bool mark) {
   std::string bytes;
@@ -87,11 +53,13 @@ TEST_F(TextFileTest, InflatesWhatIsCompressed) {
   std::string text;
   for (int i = 0; i < 50'000; ++i) text += std::to_string(i * 7919) + "\n";
   EXPECT_EQ(read(text), text);
-  EXPECT_EQ(read(gzipped(text)), text);
-  EXPECT_EQ(read(gzipped(text) + gzipped("more\n")), text + "more\n") << "two members";
-  EXPECT_EQ(read(zstd(text)), text);
-  EXPECT_EQ(read(bzip2(text)), text);
-  EXPECT_EQ(read(gzipped("")), "");
+  EXPECT_EQ(read(deflated("gzip", text)), text);
+  EXPECT_EQ(read(deflated("gzip", text) + deflated("gzip", "more\n")), text + "more\n")
+      << "two members";
+  EXPECT_EQ(read(deflated("zstd", text)), text);
+  EXPECT_EQ(read(deflated("bz2", text)), text);
+  EXPECT_EQ(read(deflated("lz4", text)), text);
+  EXPECT_EQ(read(deflated("gzip", "")), "");
   EXPECT_EQ(read(""), "");
 }
 
@@ -105,23 +73,37 @@ TEST_F(TextFileTest, TurnsUtf16IntoUtf8) {
       }
     }
   }
-  EXPECT_EQ(read(gzipped(utf16(text, false, true))), plain);
+  EXPECT_EQ(read(deflated("gzip", utf16(text, false, true))), plain);
   EXPECT_EQ(read("\xef\xbb\xbf"
                  "abcd"),
             "abcd");
-  const std::string halves = utf16(std::u16string(u"ab") + char16_t(0xd83d) + u"c", false, true);
+  const std::string halves =
+      utf16(std::u16string(u"ab") + static_cast<char16_t>(0xd83d) + u"c", false, true);
   EXPECT_EQ(read(halves),
             "ab\xef\xbf\xbd"
             "c");
 }
 
 TEST_F(TextFileTest, DamageIsAnError) {
-  const std::string packed = gzipped(std::string(100'000, 'a') + "\n");
+  const std::string packed = deflated("gzip", std::string(100'000, 'a') + "\n");
   EXPECT_EQ(problem(packed.substr(0, packed.size() / 2)),
             "gzip: the compressed bytes end too early");
   std::string broken = packed;
   broken[20] = static_cast<char>(broken[20] ^ 0x55);
   EXPECT_THAT(problem(broken), HasSubstr("gzip: the compressed bytes"));
+}
+
+TEST_F(TextFileTest, ASmallFileDoesNotBecomeAnyAmountOfText) {
+  const std::string bomb = deflated("gzip", std::string(std::size_t{80} << 20, 'a'));
+  EXPECT_LT(bomb.size(), 100'000U);
+  EXPECT_THAT(problem(bomb), HasSubstr("more than 128 times as long when inflated; unpack it"));
+  LineReader lines(folder_.write("c.gz", deflated("gzip", std::string(5'000'000, '\n'))));
+  try {
+    while (lines.next()) continue;
+    FAIL() << "5 million lines of 5 kB";
+  } catch (const LineError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("more lines than a file of its size may have"));
+  }
 }
 
 TEST_F(TextFileTest, OtherFilesAreNamed) {

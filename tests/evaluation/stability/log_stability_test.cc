@@ -111,6 +111,20 @@ TEST(LogStability, ARestartIsAGap) {
   EXPECT_THAT(found.notes, ElementsAre("a.log: 1 gap: no difference reaches over a gap"));
 }
 
+TEST(LogStability, ARestartTakesOneIntervalForTheFrequencyAndForTimes) {
+  ClockLog log = log_at({100, 101, 102, 0, 1, 2});
+  log.segments = {3};
+  for (std::size_t i = 0; i < log.points.size(); ++i) {
+    log.points[i].error_s = 1e-6 * static_cast<double>(i);
+  }
+  const LogStability removed = stability_of_log(log, {.remove_frequency = true});
+  EXPECT_NEAR(removed.frequency_offset.value_or(0), 1e-6, 1e-15);
+  EXPECT_NEAR(removed.stability.time_error.dynamic_te_p2p_ms, 0, 1e-12);
+  const LogStability later = stability_of_log(log, {.from = LogTime{2, true}});
+  EXPECT_EQ(later.samples, 4) << "102, and behind the restart";
+  EXPECT_EQ(later.stability.pieces, 2);
+}
+
 TEST(LogStability, JitterOfThirtyPercentIsTakenAsEven) {
   std::vector<double> times;
   double at_s = 0;

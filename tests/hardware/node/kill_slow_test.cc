@@ -184,15 +184,13 @@ class KilledCapture {
 };
 
 // One node, killed again and again.
-std::uint64_t kill_often(const std::filesystem::path& folder, unsigned seed,
-                         const std::string& scenario, const Lateness& lateness) {
+std::uint64_t kill_often(NodeProcess& node, unsigned seed, const std::string& scenario,
+                         const Lateness& lateness) {
   std::mt19937 random(seed);
-  std::filesystem::create_directories(folder);
-  NodeProcess node(folder);
   node.start();
   std::uint64_t kept = 0;
   for (int kill = 0; kill < kKillsPerNode; ++kill) {
-    SCOPED_TRACE(fmt::format("kill {} of the node in {}", kill, folder.string()));
+    SCOPED_TRACE(fmt::format("kill {} of the node at port {}", kill, node.port()));
     const Nanoseconds after(static_cast<std::int64_t>(random()) % kLongestCapture.count());
     KilledCapture capture(node, fmt::format("{:08x}{:08x}", seed, kill), after);
     capture.run(scenario);
@@ -213,13 +211,21 @@ TEST(KilledNodes, LoseNothingThatWasRecorded) {
   Nanoseconds worst{};
   {
     const Lateness lateness;
-    std::vector<std::future<std::uint64_t>> nodes;
+    // All have their ports before the first starts: its process would inherit the sockets with
+    // which another thread just then looks for a free one.
+    std::vector<std::unique_ptr<NodeProcess>> nodes;
+    for (int node = 0; node < kNodes; ++node) {
+      const auto folder = root / fmt::format("node{}", node);
+      std::filesystem::create_directories(folder);
+      nodes.push_back(std::make_unique<NodeProcess>(folder));
+    }
+    std::vector<std::future<std::uint64_t>> kept_by_node;
     for (unsigned node = 0; node < kNodes; ++node) {
-      nodes.push_back(std::async(std::launch::async, [&, node] {
-        return kill_often(root / fmt::format("node{}", node), seed + node, scenario, lateness);
+      kept_by_node.push_back(std::async(std::launch::async, [&, node] {
+        return kill_often(*nodes[node], seed + node, scenario, lateness);
       }));
     }
-    for (auto& node : nodes) EXPECT_NO_THROW(kept += node.get());
+    for (auto& of_node : kept_by_node) EXPECT_NO_THROW(kept += of_node.get());
     worst = lateness.worst();
   }
   std::filesystem::remove_all(root);

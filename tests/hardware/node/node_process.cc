@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -63,7 +64,11 @@ void NodeProcess::start() {
   char first = 0;
   const bool ready = poll(&readable, 1, kReadyLimitMs) > 0 && read(out[0], &first, 1) == 1;
   close(out[0]);
-  if (!ready) throw std::runtime_error(fmt::format("the node is not ready; see {}", log));
+  if (!ready) {
+    std::stringstream said;
+    said << std::ifstream(log).rdbuf();
+    throw std::runtime_error(fmt::format("the node is not ready; it said: {}", said.str()));
+  }
 }
 
 MonotonicTime NodeProcess::kill() {
