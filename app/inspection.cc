@@ -7,6 +7,7 @@
 
 #include "app/recorded_streams.h"
 #include "app/stream_run.h"
+#include "recording/dataset_folder.h"
 #include "recording/rs_csv.h"
 
 namespace simbench::app {
@@ -42,10 +43,11 @@ std::uint64_t bytes_of(const std::string& path) {
 
 }  // namespace
 
-std::vector<reports::Inspection> inspected(const std::vector<std::string>& paths,
+std::vector<reports::Inspection> inspected(const std::vector<std::string>& inputs,
                                            const bags::FileOptions& options,
                                            const std::vector<std::string>& device_times,
                                            const ReadProgress& progress) {
+  const std::vector<std::string> paths = with_dataset_files(inputs);
   check_given_once(paths);
   const std::vector<std::string> names = camera_names(paths);
   std::uint64_t total = 0;

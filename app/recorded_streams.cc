@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/ibl_recording.h"
+#include "recording/dataset_folder.h"
 #include "recording/recorded_stream_sink.h"
 #include "recording/recording_folder.h"
 #include "scenarios/loader.h"
@@ -35,19 +36,21 @@ RecordedStreams streams_of_folder(const std::string& path) {
 
 std::optional<std::string> recording_folder_of(const std::vector<std::string>& inputs) {
   const auto folder = std::ranges::find_if(inputs, [](const std::string& path) {
-    return std::filesystem::is_directory(path) && !bags::is_bag(path);
+    return std::filesystem::is_directory(path) && !bags::is_bag(path) &&
+           dataset_files(path).empty();
   });
   if (folder == inputs.end()) return std::nullopt;
   if (inputs.size() == 1) return *folder;
   throw scenarios::InputError(fmt::format(
-      "{}: found among {} inputs, allowed one recording folder, or files and folders of "
-      "rosbag2",
+      "{}: found among {} inputs, allowed one recording folder, or files, folders of rosbag2 and "
+      "of CSV files",
       *folder, inputs.size()));
 }
 
-RecordedStreams recorded_streams(const std::vector<std::string>& inputs,
+RecordedStreams recorded_streams(const std::vector<std::string>& paths,
                                  const bags::FileOptions& options, const ReadProgress& progress) {
-  if (const auto folder = recording_folder_of(inputs)) return streams_of_folder(*folder);
+  if (const auto folder = recording_folder_of(paths)) return streams_of_folder(*folder);
+  const std::vector<std::string> inputs = with_dataset_files(paths);
   std::vector<std::string> others = inputs;
   std::erase_if(others, is_ibl_recording);
   RecordedStreams found;

@@ -13,6 +13,7 @@
 #include "app/interrupt.h"
 #include "app/recorded_streams.h"
 #include "recording/counted.h"
+#include "recording/dataset_folder.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/loader.h"
 
@@ -222,7 +223,9 @@ bool is_recording_folder(const std::string& path) {
 
 bool is_recording(const std::string& path) {
   if (is_recording_folder(path)) return true;
-  if (std::filesystem::is_directory(path)) return bags::is_bag(path);
+  if (std::filesystem::is_directory(path)) {
+    return bags::is_bag(path) || !dataset_files(path).empty();
+  }
   return std::filesystem::exists(path) && !path.ends_with(".json");
 }
 

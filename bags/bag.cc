@@ -1,12 +1,18 @@
 #include "bags/bag.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
-#include <filesystem>
 #include <memory>
 #include <string_view>
 
+#include "bags/read_budget.h"
+#include "recording/append_file.h"
 #include "recording/byte_stream.h"
 #include "recording/file_kind.h"
+#include "recording/recording_folder.h"
+#include "recording/temporary_folder.h"
 
 namespace simbench::bags {
 namespace {
@@ -51,17 +57,92 @@ bool is_compressed_whole(const std::string& path) {
   }
 }
 
-std::string unpacking_text(const std::string& path) {
-  const std::filesystem::path file(path);
-  const bool has_suffix = file.extension() == ".zstd" || file.extension() == ".zst";
-  const std::string to = has_suffix ? (file.parent_path() / file.stem()).string() : path + ".bag";
-  return "is compressed as a whole (zstd); unpack it: zstd -d " + path + " -o " + to;
-}
+namespace {
+
+// The plain bytes of a file that is compressed as a whole, as a file of their own.
+class UnpackedBag {
+ public:
+  explicit UnpackedBag(const std::string& path) : of_(path), path_(folder_.file("bag")) {
+    FileBytes compressed(path);
+    compressed_size_ = compressed.size();
+    const std::unique_ptr<ByteStream> plain = inflated(Compression::kZstd, compressed);
+    ReadBudget budget(compressed_size_);
+    AppendFile file(path_);
+    try {
+      while (copy_block(*plain, budget, file)) {
+      }
+    } catch (const InflateError& error) {
+      lost_ = fmt::format("{}: {}; the rest is lost", path, error.what());
+    } catch (const BudgetSpent& error) {
+      lost_ = fmt::format("{}: {}", path, error.what());
+    }
+    file.close();
+  }
+
+  BagFacts read(BagSink& sink, const ReadProgress& progress) {
+    BagFacts facts;
+    try {
+      facts = read_bag(path_, sink, [&](std::uint64_t done, std::uint64_t) {
+        // Of the file that the user has.
+        if (progress) progress(scaled(done), compressed_size_);
+      });
+    } catch (const BagError& error) {
+      throw BagError(renamed(error.what()) + (lost_.empty() ? "" : "; " + lost_));
+    }
+    for (std::string& note : facts.notes) note = renamed(note);
+    facts.description += ", compressed as a whole (zstd)";
+    if (!lost_.empty()) {
+      facts.notes.push_back(lost_);
+      facts.indexed = false;
+    }
+    return facts;
+  }
+
+ private:
+  static constexpr std::size_t kBlock = std::size_t{256} << 10;
+
+  // False at the end.
+  bool copy_block(ByteStream& plain, ReadBudget& budget, AppendFile& file) {
+    std::string& block = file.buffer();
+    block.resize(kBlock);
+    std::size_t size = 0;
+    try {
+      size = plain.read(block.data(), kBlock);
+    } catch (...) {
+      block.clear();
+      throw;
+    }
+    block.resize(size);
+    file.flush();
+    plain_size_ += size;
+    budget.take_plain(size);
+    return size > 0;
+  }
+  std::uint64_t scaled(std::uint64_t done) const {
+    const double share =
+        static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(plain_size_, 1));
+    return static_cast<std::uint64_t>(share * static_cast<double>(compressed_size_));
+  }
+  // Messages name the file that the user has.
+  std::string renamed(std::string text) const {
+    if (text.starts_with(path_)) text.replace(0, path_.size(), of_ + ", unpacked");
+    return text;
+  }
+
+  std::string of_;
+  TemporaryFolder folder_;
+  std::string path_;
+  std::uint64_t compressed_size_ = 0;
+  std::uint64_t plain_size_ = 0;
+  std::string lost_;
+};
+
+}  // namespace
 
 BagFacts read_bag(const std::string& path, BagSink& sink, const ReadProgress& progress) {
   try {
     const std::optional<BagFormat> format = bag_format(path);
-    if (!format && is_compressed_whole(path)) throw BagError(path + ": " + unpacking_text(path));
+    if (!format && is_compressed_whole(path)) return UnpackedBag(path).read(sink, progress);
     if (!format) {
       throw BagError(path +
                      ": found no bag, allowed: rosbag 2.0 (also of the RealSense SDK), MCAP, or "
@@ -77,6 +158,9 @@ BagFacts read_bag(const std::string& path, BagSink& sink, const ReadProgress& pr
     }
   } catch (const FileError& error) {
     throw BagError(path + ": cannot be read: " + error.what());
+  } catch (const RecordingFolderError& error) {
+    throw BagError(path + ": cannot be unpacked: " + error.what() +
+                   "; TMPDIR names another place for temporary files");
   }
   return {};
 }

@@ -93,11 +93,9 @@ struct BagFacts {
 // bag. Throws FileError if the file cannot be read.
 std::optional<BagFormat> bag_format(const std::string& path);
 std::string_view to_text(BagFormat format);
-// Whether the file as a whole is compressed by zstd, as rosbag2 can do; such a one is refused.
-// Throws FileError.
+// Whether the file as a whole is compressed by zstd, as rosbag2 can do; read_bag() unpacks such a
+// one among the temporary files, as far as it may (bags/read_budget.h). Throws FileError.
 bool is_compressed_whole(const std::string& path);
-// "is compressed as a whole (zstd); unpack it: zstd -d x.db3.zstd -o x.db3"
-std::string unpacking_text(const std::string& path);
 
 // `progress` counts bytes of the file; what it throws ends the reading, as what the sink throws.
 // Throws BagError.

@@ -12,6 +12,7 @@
 
 #include "bags/frame_track.h"
 #include "bags/rosbag2_folder.h"
+#include "bags/video_times.h"
 #include "recording/text_fields.h"
 #include "scenarios/input_file.h"
 
@@ -111,6 +112,15 @@ void append(BagScan& scan, BagScan next) {
                                                fmt::join(headed, ","))));
 }
 
+bool holds_video(const std::string& path) {
+  if (!fs::is_regular_file(path)) return false;
+  try {
+    return is_video(path);
+  } catch (const FileError& error) {
+    throw BagError(path + ": cannot be read: " + error.what());
+  }
+}
+
 }  // namespace
 
 bool is_bag(const std::string& path) {
@@ -191,6 +201,8 @@ RecordedStreams read_recorded_files(const std::vector<std::string>& files,
       BagScan scan = scan_recording(files[i], names[i], {.topics = options.topics}, counted);
       if (scan.streams.empty()) fail_without_cameras(files[i], scan);
       recordings[i] = {std::move(scan.streams), std::move(scan.notes)};
+    } else if (holds_video(files[i])) {
+      recordings[i] = read_video(files[i], names[i], counted);
     } else {
       csv.read_file(files[i], names[i], counted);
     }

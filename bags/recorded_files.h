@@ -1,5 +1,5 @@
 // Files of real cameras, by their content and not by their name: bags (bags/bag.h), folders of
-// rosbag2, and CSV (recording/rs_csv.h).
+// rosbag2, videos (bags/video_times.h), and CSV (recording/rs_csv.h).
 //
 // Several files are one rig. A file is one host, whose recorder stamped all its arrivals, unless a
 // CSV names hosts. A camera of a bag with one camera has the file's name; a bag with several names

@@ -116,11 +116,8 @@ std::vector<std::string> rosbag2_files(const std::string& folder, std::vector<st
   std::vector<std::string> names;
   std::set<std::string> seen;
   for (fs::path& file : files) {
-    if (is_named_compressed(file)) {
-      // Whoever has unpacked it need not touch metadata.yaml.
-      if (!fs::exists(file.parent_path() / file.stem())) {
-        throw BagError(file.string() + ": " + unpacking_text(file.string()));
-      }
+    // Whoever has unpacked it need not touch metadata.yaml.
+    if (is_named_compressed(file) && fs::exists(file.parent_path() / file.stem())) {
       file.replace_extension();
     }
     std::error_code none;

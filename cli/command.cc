@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "cli/command_line.h"
 #include "cli/process.h"
 #include "evaluation/scoring/ranked_by.h"
+#include "recording/dataset_folder.h"
 #include "recording/number_in.h"
 #include "reports/text/output_file.h"
 
@@ -72,6 +74,8 @@ std::vector<std::string> named_inputs(const CLI::Option& option) {
     return {};
   }
   std::vector<std::string> inputs = option.results();
+  for (const std::string& path : option.results())
+    std::ranges::move(dataset_files(path), std::back_inserter(inputs));
   if (holds("=")) {  // NAME=FILE
     for (std::string& input : inputs) input.erase(0, input.find('=') + 1);
   }

@@ -7,7 +7,7 @@
 
 #include "cli/command_table.h"
 #include "cli/completion_scripts.h"
-#include "hardware/shell_quoted.h"
+#include "recording/shell_quoted.h"
 #include "reports/text/escaped_text.h"
 
 namespace simbench::cli {
@@ -130,7 +130,7 @@ std::string option_specs(const OptionEntry& option) {
     const bool value = option.value != ValueKind::kNone;
     const std::string joined = value && name.starts_with("--") ? name + "=" : name;
     text += fmt::format(
-        "  {}\n", hardware::shell_quoted(fmt::format(
+        "  {}\n", shell_quoted(fmt::format(
                       "{}{}[{}]{}", excluded, joined, escaped(option.text),
                       value ? fmt::format(":{}:{}", escaped(option.value_name), action(option))
                             : std::string())));
@@ -142,7 +142,7 @@ std::string specs(const std::string& name, const CommandEntry& command) {
   std::string text = fmt::format("_simbench_{}=(\n", replace_all_copy(name, "-", "_"));
   for (const OptionEntry& option : command.options) text += option_specs(option);
   for (const OptionEntry& argument : command.arguments) {
-    text += fmt::format("  {}\n", hardware::shell_quoted(
+    text += fmt::format("  {}\n", shell_quoted(
                                       fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
                                                   escaped(argument.value_name), action(argument))));
   }
@@ -154,7 +154,7 @@ std::string specs(const std::string& name, const CommandEntry& command) {
 std::string zsh_completion(const CommandTable& table) {
   std::string tables = "_simbench_commands=(\n";
   for (const CommandEntry& command : table.commands) {
-    tables += fmt::format("  {}\n", hardware::shell_quoted(
+    tables += fmt::format("  {}\n", shell_quoted(
                                         fmt::format("{}:{}", command.name, escaped(command.text))));
   }
   tables += ")\n" + specs("program_options", table.program);

@@ -26,7 +26,7 @@ struct InputOptions {
 
 // What a command says of its inputs in the help's list of arguments.
 inline constexpr const char* kInputsText =
-    "A recording folder; or bags (RealSense, ROS 1, ROS 2) and CSV files";
+    "A recording folder; or bags (RealSense, ROS 1, ROS 2), CSV files, videos, and folders of them";
 
 void add_input_options(Command& command, InputOptions& options);
 

@@ -22,6 +22,7 @@ inline constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
 struct FileKind {
   std::string_view what{};     // as a message calls it
   bool holds_another = false;  // compressed by gzip, zstd, bzip2 or LZ4: text may be in it
+  bool is_video = false;       // a container of tracks with frames
 };
 
 // How many first bytes tell all kinds apart.

@@ -104,13 +104,6 @@ FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host) {
     return all.size() - 1;
   };
   for (const RecordedStream& stream : streams) {
-    if (counts_from_1970(stream.frames)) {
-      throw FitError(
-          fmt::format("camera {}: found stamps that count from 1970, allowed stamps of the "
-                      "camera's clock (of a "
-                      "RealSense: with the option \"global time\" off)",
-                      stream.camera));
-    }
     const std::string& host = one_host ? kOneHost : stream.host;
     const std::size_t host_number = number_of(input.hosts, host, [&] { return host; });
     const std::size_t camera = number_of(input.cameras, stream.camera, [&] {

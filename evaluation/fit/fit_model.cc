@@ -286,6 +286,18 @@ Lines fit_evidence(const RigFit& fit, const FitInput& input) {
   return lines;
 }
 
+// Those with stamps of a clock that is set.
+std::vector<std::string> cameras_from_1970(const FitInput& input) {
+  std::vector<std::string> names;
+  for (const FitStream& stream : input.streams) {
+    const std::string& name = input.cameras[stream.camera].name;
+    if (counts_from_1970(stream.frames) && std::ranges::find(names, name) == names.end()) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input,
                                         const scenarios::Scenario& base) {
   Lines lines = {
@@ -316,6 +328,12 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
         "how cameras share a bus: the base has it \"{}\"; where that delays frames unequally, it "
         "is in the measured delays as well and counts twice",
         to_text(base.usb.sharing)));
+  }
+  if (const std::vector<std::string> names = cameras_from_1970(input); !names.empty()) {
+    lines.push_back(fmt::format(
+        "the oscillator of {}: stamps that count from 1970 are of a clock that is set (of a "
+        "computer, of a camera under PTP, or librealsense's global time), whose rate stands for it",
+        fmt::join(names, ", ")));
   }
   return lines;
 }

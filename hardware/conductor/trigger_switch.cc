@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "hardware/net/notice.h"
-#include "hardware/shell_quoted.h"
+#include "recording/shell_quoted.h"
 
 namespace simbench::hardware {
 namespace {

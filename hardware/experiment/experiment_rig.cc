@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "hardware/experiment/network_sandbox.h"
-#include "hardware/shell_quoted.h"
+#include "recording/shell_quoted.h"
 
 namespace simbench::hardware {
 namespace {

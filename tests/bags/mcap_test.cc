@@ -75,6 +75,48 @@ TEST(Mcap, EveryKindOfFileGivesTheSameMessages) {
   }
 }
 
+// rosbag2's compression_mode FILE.
+TEST(Mcap, AFileThatIsCompressedAsAWholeGivesTheSameMessages) {
+  const ScratchFolder folder;
+  const std::string plain = small_mcap({.compression = "", .chunk_bytes = 300});
+  const std::string packed = deflated("zstd", plain);
+  KeptBag expected(20);
+  read_text(folder, plain, expected);
+  KeptBag whole(20);
+  std::uint64_t last = 0;
+  const std::string path = folder.write("rig.mcap.zstd", packed);
+  const BagFacts facts = read_bag(path, whole, [&](std::uint64_t done, std::uint64_t total) {
+    EXPECT_EQ(total, packed.size());
+    EXPECT_LE(last, done);
+    last = done;
+  });
+  EXPECT_LE(last, packed.size());
+  EXPECT_EQ(whole.messages, expected.messages);
+  EXPECT_TRUE(facts.indexed);
+  EXPECT_THAT(facts.description, HasSubstr("compressed as a whole (zstd)"));
+  EXPECT_THAT(facts.notes, testing::IsEmpty());
+}
+
+TEST(Mcap, AFileThatIsCompressedAsAWholeAndCutIsReadUpToThere) {
+  const ScratchFolder folder;
+  // Numbers that look random, so that half of the packed bytes is about half of the messages.
+  McapWriter mcap({});
+  const std::uint16_t id = mcap.channel("/left", "sensor_msgs/msg/Image", "cdr");
+  std::mt19937 random(1);
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    mcap.message(id, i, cdr_header(i, 0, "f") + bytes_of(random(), 4) + bytes_of(random(), 4));
+  }
+  const std::string packed = deflated("zstd", mcap.close());
+  const std::string path = folder.write("rig.mcap.zstd", packed.substr(0, packed.size() / 2));
+  KeptBag bag;
+  const BagFacts facts = read_bag(path, bag);
+  EXPECT_GT(bag.messages.size(), 1'000U);
+  EXPECT_LT(bag.messages.size(), 20'000U);
+  EXPECT_FALSE(facts.indexed);
+  EXPECT_THAT(facts.notes, testing::Contains(testing::StartsWith(path + ": ")));
+  EXPECT_THAT(facts.notes, testing::Contains(HasSubstr("the rest is lost")));
+}
+
 TEST(Mcap, LargeMessagesAndLargeHeads) {
   const ScratchFolder folder;
   for (const char* compression : {"", "lz4", "zstd"}) {

@@ -17,6 +17,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 std::string folder_refusal(const ScratchFolder& folder) {
   try {
@@ -49,12 +50,12 @@ TEST(Rosbag2Folder, WithoutMetadataNumbersCount) {
               ElementsAre(folder / "rig_1.mcap", folder / "rig_9.mcap", folder / "rig_10.mcap"));
 }
 
-TEST(Rosbag2Folder, AFileThatIsCompressedAsAWholeSaysHowToUnpackIt) {
+TEST(Rosbag2Folder, AFileThatIsCompressedAsAWholeIsReadUnlessItIsUnpackedBesideIt) {
   const ScratchFolder folder;
   const std::string file = folder.write("rig_0.db3.zstd", "");
-  EXPECT_THAT(folder_refusal(folder), HasSubstr("zstd -d " + file + " -o "));
+  EXPECT_THAT(rosbag2_files(folder.path().string()), ElementsAre(file));
   folder.write("metadata.yaml", "relative_file_paths:\n- rig_0.db3.zstd\n");
-  EXPECT_THAT(folder_refusal(folder), HasSubstr("zstd -d " + file + " -o "));
+  EXPECT_THAT(rosbag2_files(folder.path().string()), ElementsAre(file));
   folder.write("rig_0.db3", "");
   EXPECT_THAT(rosbag2_files(folder.path().string()), ElementsAre(folder / "rig_0.db3"));
 }
@@ -86,8 +87,7 @@ TEST(Rosbag2Folder, AFileThatIsCompressedAsAWholeIsKnownByItsBytes) {
   const std::string path =
       folder.write("rig.db3.zstd", deflated("zstd", std::string("SQLite format 3\0rest", 20)));
   EXPECT_TRUE(is_bag(path));
-  EXPECT_THAT(bag_refusal(path), HasSubstr("is compressed as a whole (zstd); unpack it: zstd -d " +
-                                           path + " -o " + std::string(folder / "rig.db3")));
+  EXPECT_THAT(bag_refusal(path), StartsWith(path + ", unpacked: "));
 }
 
 TEST(Rosbag2Folder, AFolderWithoutBagsIsRefused) {

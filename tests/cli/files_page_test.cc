@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bags/bag_writers.h"
 #include "tests/cli/program.h"
 #include "tests/deflated.h"
 
@@ -174,6 +176,44 @@ std::map<std::string, std::string> table_files() {
   };
 }
 
+std::string rsdc() {
+  return repeated(
+      [](int i) { return fmt::format("Depth,0,{},{}.333,{}.5", i, 1000 + 33 * i, 5 + 33 * i); },
+      "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n");
+}
+
+// An MCAP with a camera.
+std::string mcap() {
+  bags::McapWriter mcap({.compression = "", .chunk_bytes = 0});
+  const std::uint16_t left = mcap.channel("/left/image", "sensor_msgs/msg/Image", "cdr");
+  for (std::uint32_t i = 0; i < kLines; ++i) {
+    mcap.message(left, 1'000'000'000ULL * i, bags::cdr_header(i, 0, "left"));
+  }
+  return mcap.close();
+}
+
+std::map<std::string, std::string> folders_of_cameras() {
+  const std::string euroc = repeated(
+      [](int i) { return fmt::format("{},{}.png", 1700000000000000000 + 50'000'000LL * i, i); },
+      "#timestamp [ns],filename\n");
+  const std::string tum =
+      repeated([](int i) { return fmt::format("17000001{:02}.003014 {}.png", i, i); }, "# a\n");
+  const std::string kitti =
+      repeated([](int i) { return fmt::format("2011-09-26 13:02:{:02}.964389445", i); });
+  return {
+      {"MH_01_easy/mav0/cam0/data.csv", euroc},
+      {"MH_01_easy/mav0/cam1/data.csv", euroc},
+      {"freiburg1_xyz/rgb.txt", tum},
+      {"freiburg1_xyz/depth.txt", tum},
+      {"2011_09_26_drive_0001_sync/image_00/timestamps.txt", kitti},
+      {"2011_09_26_drive_0001_sync/image_01/timestamps.txt", kitti},
+      {"csv_rig/front.csv", rsdc()},
+      {"csv_rig/back.csv.gz", deflated("gzip", rsdc())},
+      {"rig_0.mcap.zstd", deflated("zstd", mcap())},
+      {"output.mkv", "\x1a\x45\xdf\xa3"},
+  };
+}
+
 std::map<std::string, std::string> camera_files() {
   const auto stamps = [](const std::string& heading) {
     return repeated(
@@ -181,11 +221,7 @@ std::map<std::string, std::string> camera_files() {
         heading);
   };
   return {
-      {"rsdc.csv", repeated(
-                       [](int i) {
-                         return fmt::format("Depth,0,{},{}.333,{}.5", i, 1000 + 33 * i, 5 + 33 * i);
-                       },
-                       "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n")},
+      {"rsdc.csv", rsdc()},
       {"MH01.txt",
        repeated([](int i) { return fmt::format("{}", 1700000000123455872 + 50'000'000LL * i); })},
       {"cam0/data.csv", stamps("#timestamp [ns],filename\n")},
@@ -228,16 +264,23 @@ std::vector<std::vector<std::string>> commands_of_tables() {
 class FilesPage : public ProgramTest {};
 
 TEST_F(FilesPage, EveryCommandRuns) {
-  for (const auto& files : {linuxptp_files(), daemon_files(), table_files(), camera_files()}) {
+  // In the place of FFmpeg's, which a machine may not have.
+  std::filesystem::create_directory(folder() / "bin");
+  file("bin/ffprobe", "#!/bin/sh\necho packet,0,0,1; echo packet,0,33,2; echo stream,0,1/1000\n");
+  for (const auto& files :
+       {linuxptp_files(), daemon_files(), table_files(), camera_files(), folders_of_cameras()}) {
     for (const auto& [name, content] : files) {
       std::filesystem::create_directories((folder() / name).parent_path());
       file(name, content);
     }
   }
   const std::vector<std::vector<std::string>> commands = commands_of_tables();
-  EXPECT_GT(commands.size(), 40U);
+  EXPECT_GT(commands.size(), 45U);
+  std::filesystem::permissions(folder() / "bin/ffprobe", std::filesystem::perms::owner_all);
+  const ProgramOptions with_ffprobe{
+      .environment = {fmt::format("PATH={}:{}", (folder() / "bin").string(), std::getenv("PATH"))}};
   for (const std::vector<std::string>& command : commands) {
-    const ProgramResult result = run(command);
+    const ProgramResult result = run(command, with_ffprobe);
     EXPECT_EQ(result.status, 0) << fmt::format("{}", fmt::join(command, " ")) << "\n" << result.err;
     EXPECT_THAT(result.out, Not(IsEmpty()));
   }

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace simbench::hardware {
+namespace simbench {
 
 inline std::string shell_quoted(const std::string& text) {
   std::string result = "'";
@@ -13,4 +13,4 @@ inline std::string shell_quoted(const std::string& text) {
   return result + "'";
 }
 
-}  // namespace simbench::hardware
+}  // namespace simbench
