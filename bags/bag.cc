@@ -83,7 +83,7 @@ class UnpackedBag {
     BagFacts facts;
     try {
       facts = read_bag(path_, sink, [&](std::uint64_t done, std::uint64_t) {
-        // Of the file that the user has.
+        // In bytes of the file that the user has.
         if (progress) progress(scaled(done), compressed_size_);
       });
     } catch (const BagError& error) {

@@ -142,9 +142,9 @@ std::string specs(const std::string& name, const CommandEntry& command) {
   std::string text = fmt::format("_simbench_{}=(\n", replace_all_copy(name, "-", "_"));
   for (const OptionEntry& option : command.options) text += option_specs(option);
   for (const OptionEntry& argument : command.arguments) {
-    text += fmt::format("  {}\n", shell_quoted(
-                                      fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
-                                                  escaped(argument.value_name), action(argument))));
+    text += fmt::format("  {}\n",
+                        shell_quoted(fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
+                                                 escaped(argument.value_name), action(argument))));
   }
   return text + ")\n";
 }
@@ -154,8 +154,8 @@ std::string specs(const std::string& name, const CommandEntry& command) {
 std::string zsh_completion(const CommandTable& table) {
   std::string tables = "_simbench_commands=(\n";
   for (const CommandEntry& command : table.commands) {
-    tables += fmt::format("  {}\n", shell_quoted(
-                                        fmt::format("{}:{}", command.name, escaped(command.text))));
+    tables += fmt::format("  {}\n",
+                          shell_quoted(fmt::format("{}:{}", command.name, escaped(command.text))));
   }
   tables += ")\n" + specs("program_options", table.program);
   for (const CommandEntry& command : table.commands) tables += specs(command.name, command);

@@ -1,19 +1,19 @@
 // Measured time errors of a clock from the files that other programs write, recognised by content:
 //
 // - linuxptp: what ptp4l, phc2sys and ts2phc print or log ("ptp4l[5374018.735]: master offset -23
-// s2
-//   freq ..."), nanoseconds, positive: the clock is ahead of its source. Also behind the heads of
-//   syslog, journalctl (short, short-iso, cat, json, export), Docker, Kubernetes, and of both at
+//   s2 freq ..."), nanoseconds, positive: the clock is ahead of its source. Also behind the heads
+//   of syslog, journalctl (short, short-iso, cat, json, export), Docker, Kubernetes, and of both at
 //   once, and their summaries ("rms 67 max 73 freq ...").
 // - chrony: tracking.log (7th column, positive: fast), statistics.log (5th, positive: fast),
 //   measurements.log (12th, positive: slow), refclocks.log (raw offset, positive: slow), and
 //   `chronyc -c tracking` in a loop (last offset, positive: fast).
 // - ntpd: loopstats (3rd column), peerstats (5th), sntp's output, positive: slow. ntpshmmon: the
-// clock
-//   minus the reference's time.
-// - others: w32tm /stripchart, positive: slow. Debug lines of systemd-timesyncd, positive: slow.
-// The
-//   statistics of ptpd: offset from master, positive: fast.
+//   clock minus the reference's time.
+// - others: w32tm /stripchart (also /rdtsc), positive: slow. Debug lines of systemd-timesyncd,
+//   positive: slow. The statistics of ptpd: offset from master, positive: fast.
+// - a TICC's time stamps of the pulses of a clock, once a second by each channel: a pulse that
+// comes
+//   early is of a clock that is ahead, from the first pulse on.
 // - csv: tables (recording/table.h) of time and time error, see below.
 //
 // The format is that of most lines: what is no measurement (banners, changes of state, other
@@ -39,7 +39,7 @@
 //
 // Sources: chrony.conf(5), chronyc(1), clock.c, phc2sys.c and print.c of linuxptp, monitoring
 // options of ntpd's documentation, sntp(1), ntpshmmon(1), ptpd2(8), w32tm's help,
-// timesyncd-manager.c of systemd.
+// timesyncd-manager.c of systemd, the TICC's manual (tapr.org).
 //
 //   const ClockLog log = read_clock_log("/var/log/chrony/tracking.log");
 //   const double first_s = log.points.front().error_s;

@@ -27,8 +27,10 @@ constexpr LogFormat kFormats[] = {
     {"output of sntp", sntp_lines},
     {"output of ntpshmmon", ntpshmmon_lines},
     {"w32tm /stripchart", w32tm_lines},
+    {"w32tm /stripchart /rdtsc", w32tm_rdtsc_lines},
     {"debug lines of systemd-timesyncd", timesyncd_lines},
     {"statistics of ptpd", ptpd_lines},
+    {"time stamps of a TICC", ticc_lines},
 };
 
 struct OtherLog {
@@ -51,9 +53,6 @@ constexpr auto kOthers = std::to_array<OtherLog>({
     {"Date (UTC) Time",
      "another log of chronyd; allowed: its tracking.log, statistics.log, measurements.log or "
      "refclocks.log"},
-    {"RdtscStart",
-     "w32tm /stripchart /rdtsc; allowed: w32tm /stripchart with /dataonly, whose offsets are in "
-     "seconds"},
     {"System clock synchronized:",
      "timedatectl, which has no time error; allowed: systemd-timesyncd's "
      "debug lines, or the log of another daemon"},

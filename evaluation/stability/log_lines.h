@@ -99,7 +99,9 @@ std::unique_ptr<LogLines> peerstats_lines();
 std::unique_ptr<LogLines> sntp_lines();
 std::unique_ptr<LogLines> ntpshmmon_lines();
 std::unique_ptr<LogLines> w32tm_lines();
+std::unique_ptr<LogLines> w32tm_rdtsc_lines();
 std::unique_ptr<LogLines> timesyncd_lines();
 std::unique_ptr<LogLines> ptpd_lines();
+std::unique_ptr<LogLines> ticc_lines();
 
 }  // namespace simbench::evaluation

@@ -151,6 +151,38 @@ class W32tmLines final : public LogLines {
   Microseconds days_{};
 };
 
+// The next cell of a line of commas, without blanks around it, which is taken off the line.
+std::string_view take_cell(std::string_view& line) {
+  const std::size_t comma = line.find(',');
+  std::string_view cell = line.substr(0, comma);
+  line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
+  while (cell.starts_with(' ')) cell.remove_prefix(1);
+  while (cell.ends_with(' ') || cell.ends_with('\r')) cell.remove_suffix(1);
+  return cell;
+}
+
+// "RdtscStart, RdtscEnd, FileTime, RoundtripDelay, NtpOffset": two counts of the processor, local
+// time in 100 ns since 1601, and seconds.
+class W32tmRdtscLines final : public LogLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
+    if (!is_whole(take_cell(line)) || !is_whole(take_cell(line))) return std::nullopt;
+    const auto file_time = number_in<std::int64_t>(take_cell(line));
+    if (!file_time || *file_time < kYear1970) return std::nullopt;
+    finite_of(take_cell(line), "RoundtripDelay", kLargestErrorS, place);
+    const double offset_s =
+        finite_of(line.empty() ? line : take_cell(line), "NtpOffset", kLargestErrorS, place);
+    return LogLine{.format = "w32tm",
+                   .point = {Microseconds((*file_time - kYear1970) / 10), 0 - offset_s}};
+  }
+  bool is_expected(std::string_view line) const override {
+    return line.starts_with("RdtscStart") || LogLines::is_expected(line);
+  }
+
+ private:
+  static constexpr std::int64_t kYear1970 = 116'444'736'000'000'000;
+};
+
 // "Sep 03 10:32:22 host systemd-timesyncd[412]: interval/delta/delay/jitter/drift
 // 64s/+0.000s/0.012s/0.000s/+12ppm": times without a year, of one that has no leap day.
 class TimesyncdLines final : public LogLines {
@@ -201,14 +233,7 @@ class PtpdLines final : public LogLines {
  public:
   std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
     std::array<std::string_view, 5> cells;
-    std::size_t begin = 0;
-    for (std::string_view& cell : cells) {
-      if (begin > line.size()) return std::nullopt;
-      const std::size_t end = std::min(line.find(',', begin), line.size());
-      cell = line.substr(begin, end - begin);
-      while (cell.starts_with(' ')) cell.remove_prefix(1);
-      begin = end + 1;
-    }
+    for (std::string_view& cell : cells) cell = take_cell(line);
     if (cells[1] != "slv") return std::nullopt;
     const std::optional<Nanoseconds> time = date_time_in(cells[0]);
     if (!time) return std::nullopt;
@@ -227,6 +252,7 @@ std::unique_ptr<LogLines> peerstats_lines() { return std::make_unique<PeerstatsL
 std::unique_ptr<LogLines> sntp_lines() { return std::make_unique<SntpLines>(); }
 std::unique_ptr<LogLines> ntpshmmon_lines() { return std::make_unique<NtpshmmonLines>(); }
 std::unique_ptr<LogLines> w32tm_lines() { return std::make_unique<W32tmLines>(); }
+std::unique_ptr<LogLines> w32tm_rdtsc_lines() { return std::make_unique<W32tmRdtscLines>(); }
 std::unique_ptr<LogLines> timesyncd_lines() { return std::make_unique<TimesyncdLines>(); }
 std::unique_ptr<LogLines> ptpd_lines() { return std::make_unique<PtpdLines>(); }
 

@@ -31,9 +31,16 @@ using evaluation::StabilityPoint;
 
 constexpr std::size_t kStepsInText = 10;
 
+// Curves of times are in ms; ADEV and its kin have no unit.
+bool is_time(const ClockCurve& curve) { return std::string_view(curve.axis).ends_with(" ms"); }
+
+std::string in_unit(std::string_view header_ms, const ShownUnit& unit) {
+  return std::string(header_ms.substr(0, header_ms.size() - 2)) + unit.name;
+}
+
 // The unit on a line of its own.
-std::string column_header(const ClockCurve& curve) {
-  std::string header = curve.axis;
+std::string column_header(const ClockCurve& curve, const ShownUnit& unit) {
+  std::string header = is_time(curve) ? in_unit(curve.axis, unit) : curve.axis;
   std::replace(header.begin(), header.end(), ' ', '\n');
   return header;
 }
@@ -77,7 +84,32 @@ std::string offset_text(const LogStability& file) {
   return file.frequency_offset ? fmt::format("{:.6g}", 1e9 * *file.frequency_offset) : "-";
 }
 
+// The unit that fits the largest of them.
+const ShownUnit& unit_of_errors(const std::vector<StabilityFinding>& findings) {
+  double largest_ms = 0;
+  for (const StabilityFinding& finding : findings) {
+    for (const Size& size : kSizes) {
+      const double ms = std::abs(finding.log.stability.time_error.*size.value);
+      if (size.header != nullptr && has_size(finding.log, size) && std::isfinite(ms)) {
+        largest_ms = std::max(largest_ms, ms);
+      }
+    }
+  }
+  return time_unit_of(largest_ms);
+}
+
+const ShownUnit& unit_of_curves(const Stability& stability) {
+  double largest_ms = 0;
+  for (const ClockCurve& curve : evaluation::clock_curves()) {
+    for (const StabilityPoint& point : stability.*curve.points) {
+      if (is_time(curve)) largest_ms = std::max(largest_ms, point.value);
+    }
+  }
+  return time_unit_of(largest_ms);
+}
+
 Table files_table(const std::vector<StabilityFinding>& findings) {
+  const ShownUnit& unit = unit_of_errors(findings);
   std::vector<Column> columns = {{"file", Align::kLeft},
                                  {"format", Align::kLeft},
                                  {"points"},
@@ -86,7 +118,7 @@ Table files_table(const std::vector<StabilityFinding>& findings) {
                                  {"steps"},
                                  {"removed\nppb"}};
   for (const Size& size : kSizes) {
-    if (size.header != nullptr) columns.push_back({size.header});
+    if (size.header != nullptr) columns.push_back({in_unit(size.header, unit)});
   }
   Table table(columns);
   for (const StabilityFinding& finding : findings) {
@@ -101,7 +133,9 @@ Table files_table(const std::vector<StabilityFinding>& findings) {
                                       offset_text(file)};
     for (const Size& size : kSizes) {
       if (size.header == nullptr) continue;
-      cells.push_back(has_size(file, size) ? three_digits(stability.time_error.*size.value) : "-");
+      cells.push_back(has_size(file, size)
+                          ? three_digits(unit.per_ms * stability.time_error.*size.value)
+                          : "-");
     }
     table.add(std::move(cells));
   }
@@ -115,8 +149,8 @@ std::vector<std::string> step_items(const Stability& stability) {
       items.push_back(fmt::format("{} more: JSON has all", stability.steps.size() - kStepsInText));
       break;
     }
-    items.push_back(fmt::format("step of {} ms at {:.9g} s after the first point",
-                                three_digits(1e3 * step.step_s), step.at_s));
+    items.push_back(fmt::format("step of {} at {:.9g} s after the first point",
+                                time_text(1e3 * step.step_s), step.at_s));
   }
   return items;
 }
@@ -188,8 +222,10 @@ bool is_reliable(const ClockCurve& curve, const StabilityPoint& point) {
   return curve.deviation == Deviation::kMtie || (point.certainty && point.certainty->reliable);
 }
 
-std::string interval_of_point_text(const std::optional<Certainty>& certainty) {
-  return certainty ? fmt::format("{:.2g}..{:.2g}", certainty->low, certainty->high) : "-";
+std::string interval_of_point_text(const std::optional<Certainty>& certainty, double per_unit) {
+  return certainty
+             ? fmt::format("{:.2g}..{:.2g}", per_unit * certainty->low, per_unit * certainty->high)
+             : "-";
 }
 
 // The point as points_json() has it, and its certainty.
@@ -240,9 +276,10 @@ std::string limits_text(const std::vector<StabilityFinding>& findings) {
 }  // namespace
 
 Table stability_table(const Stability& stability) {
+  const ShownUnit& unit = unit_of_curves(stability);
   std::vector<Column> columns = {{"tau s"}};
   for (const ClockCurve& curve : evaluation::clock_curves()) {
-    columns.push_back({column_header(curve)});
+    columns.push_back({column_header(curve, unit)});
     if (has_interval_in_text(curve)) columns.push_back({"95 %\ninterval"});
   }
   Table table(columns);
@@ -256,11 +293,12 @@ Table stability_table(const Stability& stability) {
     for (const ClockCurve& curve : evaluation::clock_curves()) {
       const std::vector<StabilityPoint>& points = stability.*curve.points;
       const bool exists = i < points.size();
-      cells.push_back(!exists                         ? "-"
-                      : is_reliable(curve, points[i]) ? three_digits(points[i].value)
-                                                      : three_digits(points[i].value) + "?");
+      const double per_unit = is_time(curve) ? unit.per_ms : 1;
+      cells.push_back(!exists ? "-"
+                              : three_digits(per_unit * points[i].value) +
+                                    (is_reliable(curve, points[i]) ? "" : "?"));
       if (has_interval_in_text(curve)) {
-        cells.push_back(exists ? interval_of_point_text(points[i].certainty) : "-");
+        cells.push_back(exists ? interval_of_point_text(points[i].certainty, per_unit) : "-");
       }
     }
     table.add(std::move(cells));

@@ -10,37 +10,32 @@
 namespace simbench::reports {
 namespace {
 
-struct TimeUnit {
-  double from_ms;  // the smallest size that is shown in it
-  double per_ms;
-  const char* name;
-};
-constexpr TimeUnit kTimeUnits[] = {
+constexpr ShownUnit kShownUnits[] = {
     {999.5, 1e-3, "s"}, {0.09995, 1, "ms"}, {0.9995e-4, 1e3, "us"}, {0, 1e6, "ns"}};
 
-const TimeUnit& time_unit_of(double ms) {
-  return *std::find_if(std::begin(kTimeUnits), std::end(kTimeUnits) - 1,
-                       [ms](const TimeUnit& unit) { return std::abs(ms) >= unit.from_ms; });
-}
-
 }  // namespace
+
+const ShownUnit& time_unit_of(double ms) {
+  return *std::find_if(std::begin(kShownUnits), std::end(kShownUnits) - 1,
+                       [ms](const ShownUnit& unit) { return std::abs(ms) >= unit.from_ms; });
+}
 
 std::string time_text(double ms) {
   if (!std::isfinite(ms)) return "-";
   if (ms == 0) return "0";
-  const TimeUnit& unit = time_unit_of(ms);
+  const ShownUnit& unit = time_unit_of(ms);
   return fmt::format("{} {}", number_text(ms * unit.per_ms), unit.name);
 }
 
 std::string tick_text(double ms) {
-  const TimeUnit& unit = time_unit_of(ms);
+  const ShownUnit& unit = time_unit_of(ms);
   return fmt::format("{:g} {}", ms * unit.per_ms, unit.name);
 }
 
 std::string time_band_text(double low_ms, double high_ms) {
   if (!std::isfinite(low_ms) || !std::isfinite(high_ms)) return "-";
   if (low_ms == 0 && high_ms == 0) return "[0, 0]";
-  const TimeUnit& unit = time_unit_of(std::max(std::abs(low_ms), std::abs(high_ms)));
+  const ShownUnit& unit = time_unit_of(std::max(std::abs(low_ms), std::abs(high_ms)));
   return fmt::format("[{}, {}] {}", number_text(low_ms * unit.per_ms),
                      number_text(high_ms * unit.per_ms), unit.name);
 }
@@ -52,7 +47,7 @@ std::string time_change_text(double from_ms, double to_ms) {
   if (kFar * std::min(std::abs(from_ms), std::abs(to_ms)) < large_ms) {
     return fmt::format("from {} to {}", time_text(from_ms), time_text(to_ms));
   }
-  const TimeUnit& unit = time_unit_of(large_ms);
+  const ShownUnit& unit = time_unit_of(large_ms);
   return fmt::format("from {} to {} {}", number_text(from_ms * unit.per_ms),
                      number_text(to_ms * unit.per_ms), unit.name);
 }

@@ -8,6 +8,16 @@
 
 namespace simbench::reports {
 
+// A unit of time, and the smallest size that is shown in it.
+struct ShownUnit {
+  double from_ms = 0;
+  double per_ms = 0;
+  const char* name = nullptr;
+};
+
+// The unit for a column whose largest entry this is.
+const ShownUnit& time_unit_of(double ms);
+
 // "35.0 ns", "3.12 us", "0.694 ms", "543 ms", "1.61 s"; "0" for 0, "-" for what is not finite.
 std::string time_text(double ms);
 

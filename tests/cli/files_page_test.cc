@@ -120,6 +120,18 @@ std::map<std::string, std::string> daemon_files() {
        repeated(
            [](int i) { return fmt::format("06:39:{:02}, {:+013.7f}s\r", i, 1e-6 * offset_ns(i)); },
            "Tracking time.example [192.0.2.1:123].\r\n")},
+      {"rdtsc.csv", repeated(
+                        [](int i) {
+                          return fmt::format("{}, {}, {}, 00.0396100, {:+.7f}", 1000 + i, 1001 + i,
+                                             130852169372513840 + 20'000'000LL * i,
+                                             1e-6 * offset_ns(i));
+                        },
+                        "RdtscStart, RdtscEnd, FileTime, RoundtripDelay, NtpOffset\n")},
+      {"ticc.txt", repeated([](int i) {
+         return fmt::format("{}.{:012} chA\n{}.5 chB", i, 500'000 + offset_ns(i), i);
+       })},
+      {"interval.txt",
+       repeated([](int i) { return fmt::format("{:+.12f} TI(A->B)", 1e-9 * offset_ns(i)); })},
       {"timesyncd.log", repeated([](int i) {
          return fmt::format(
              "Sep 03 10:32:{:02} n systemd-timesyncd[4]: interval/delta/delay/jitter/"

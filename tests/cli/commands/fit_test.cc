@@ -71,8 +71,7 @@ TEST_F(FitCommand, JsonHasBothChecks) {
   EXPECT_NEAR(root["checks"][0]["skew_ppm"][0]["simulated"]["value"].get<double>(), 100, 0.5);
 }
 
-// Of a camera under PTP, or a ROS header: what the clock's rate is the fit says, what it is of it
-// cannot.
+// A camera under PTP has them, and a ROS header: the fit has the rate of that clock, whichever.
 TEST_F(FitCommand, StampsThatCountFrom1970AreFittedAndNamed) {
   const ProgramResult fitted =
       run({"fit", file("ptp.csv", recording(600, 1.7e12)), "-o", "model.json", "--format", "json"});

@@ -223,6 +223,35 @@ TEST(ClockLog, ReadsTheOtherLogsOfChrony) {
   EXPECT_THAT(seconds(tracking), ElementsAre(1725359542.5, 1725359606.5));
 }
 
+// NtpOffset is what has to be added to the local clock; FILETIME counts 100 ns from 1601.
+TEST(ClockLog, W32tmsTableOfProcessorCounts) {
+  const ClockLog log = parsed(
+      "Tracking time.example [192.0.2.1:123].\n"
+      "RdtscStart, RdtscEnd, FileTime, RoundtripDelay, NtpOffset\n"
+      "1064318923946, 1064319045318, 130852169372513840, 00.0396100, +00.0014513\n"
+      "1064338923946, 1064339045318, 130852169392513840, 00.0396100, -00.0000025\r\n");
+  EXPECT_EQ(log.format, "w32tm");
+  EXPECT_THAT(errors(log), ElementsAre(-0.0014513, 2.5e-6));
+  EXPECT_THAT(seconds(log), ElementsAre(1440743337.251384, 1440743339.251384));
+}
+
+// The pulse of a clock that is ahead comes early.
+TEST(ClockLog, ATiccsStampsAreTheErrorsOfTheirPulses) {
+  const std::string text =
+      "# timestamp (seconds)\n100000017.123456789012 chA\n100000017.500000000000 chB\n"
+      "100000018.123456789000 chA\n100000018.500000000250 chB\n"
+      "100000020.123456789112 chA\n100000019.900000000000 chB\n";
+  const ClockLog fast = parsed(text, {.series = "chA"});
+  ASSERT_EQ(fast.points.size(), 3U);
+  EXPECT_EQ(fast.points[0].error_s, 0);
+  EXPECT_NEAR(fast.points[1].error_s, 12e-12, 1e-16);
+  EXPECT_NEAR(fast.points[2].error_s, -100e-12, 1e-16);
+  const ClockLog late = parsed(text, {.series = "chB"});
+  ASSERT_EQ(late.points.size(), 2U);
+  EXPECT_NEAR(late.points[1].error_s, -250e-12, 1e-16);
+  EXPECT_THAT(late.notes, testing::Contains(HasSubstr("1 pulse more than 0.25 s")));
+}
+
 TEST(ClockLog, ReadsWhatOtherProgramsPrint) {
   const std::string peers =
       "60200 80000.031 127.127.28.0 961a 0.000022910 0.0 0.000251573 0.000090312\n"
