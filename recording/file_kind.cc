@@ -20,6 +20,9 @@ struct Magic {
   std::size_t at = 0;
 };
 
+constexpr std::string_view kByPython =
+    "simbench.write_recording() of the Python package makes a CSV of it";
+
 // rosbag: wiki.ros.org/Bags/Format/2.0; MCAP: mcap.dev/spec; SQLite: sqlite.org/fileformat.html;
 // NPY: numpy.lib.format; Parquet and XDF: their specifications; Matroska: RFC 8794; MP4: ISO/IEC
 // 14496-12; HDF5: its file format specification, III.A; zip: PKWARE's APPNOTE; gzip: RFC 1952;
@@ -29,9 +32,9 @@ constexpr auto kMagics = std::to_array<Magic>({
     {kRosbagMagic, {"a rosbag 2.0 bag"}},
     {kMcapMagic, {"an MCAP file"}},
     {kSqliteMagic, {"an SQLite file"}},
-    {"\x93NUMPY", {"a NumPy array"}},
-    {"PAR1", {"a Parquet file"}},
-    {"XDF:", {"an XDF file"}},
+    {"\x93NUMPY", {.what = "a NumPy array", .help = kByPython}},
+    {"PAR1", {.what = "a Parquet file", .help = kByPython}},
+    {"XDF:", {.what = "an XDF file", .help = kByPython}},
     {"\x1a\x45\xdf\xa3", {"a Matroska file", false, true}},
     {"ftyp", {"an MP4 file", false, true}, 4},
     {"moov", {"a QuickTime file", false, true}, 4},
@@ -39,7 +42,9 @@ constexpr auto kMagics = std::to_array<Magic>({
     {"wide", {"a QuickTime file", false, true}, 4},
     {"RIFF", {"an AVI or WAV file", false, true}},
     {"\x89HDF\r\n\x1a\n", {"an HDF5 file"}},
-    {"PK\x03\x04", {"a zip file"}},
+    {"PK\x03\x04",
+     {.what = "a zip file",
+      .help = "of an .npz, simbench.write_recording() of the Python package makes a CSV"}},
     {"PK\x05\x06", {"a zip file"}},
     {"\xfd\x37zXZ\0"sv, {"an xz file"}},
     {"7z\xbc\xaf\x27\x1c", {"a 7-Zip file"}},

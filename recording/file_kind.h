@@ -23,6 +23,7 @@ struct FileKind {
   std::string_view what{};     // as a message calls it
   bool holds_another = false;  // compressed by gzip, zstd, bzip2 or LZ4: text may be in it
   bool is_video = false;       // a container of tracks with frames
+  std::string_view help{};     // what makes a text of it; may be empty
 };
 
 // How many first bytes tell all kinds apart.

@@ -61,7 +61,8 @@ std::optional<Positions> usual_positions(const std::vector<std::string_view>& ce
     }
   }
   for (std::size_t field = 0; field < kUsualFields; ++field) {
-    if (!found[field]) return std::nullopt;
+    const bool is_needed = field != static_cast<std::size_t>(CsvField::kCounter);
+    if (!found[field] && is_needed) return std::nullopt;
   }
   if (repeated) place.fail("found the column " + quoted_bytes(cells[*repeated]) + " twice");
   return found;

@@ -6,7 +6,8 @@
 // HW Timestamp is the frame stamp on the camera's clock, Host Timestamp the arrival in milliseconds
 // since the tool was started. The tool's own files are read as they are: the "Configuration:" part
 // before the header is skipped, a header may come again for each stream, columns may stand in any
-// order, and unknown ones are ignored. Gyro, Accel and Pose lines are no frames and are skipped.
+// order, and unknown ones are ignored. Without F# frames count as they come. Gyro, Accel and Pose
+// lines are no frames and are skipped.
 //
 // Two more columns allow several cameras in one file: `camera` and `host` (names or numbers).
 // Without `camera`, a file is one camera with the name of the file, and of the folders that tell it

@@ -175,7 +175,8 @@ class TextFile::Layers {
     const std::string_view first = packed_.look();
     if (const std::optional<FileKind> kind = file_kind(first)) {
       if (!kind->holds_another) {
-        throw FileError(fmt::format("it is {}, no text", kind->what));
+        throw FileError(fmt::format("it is {}, no text{}{}", kind->what,
+                                    kind->help.empty() ? "" : "; ", kind->help));
       }
       inflated_ = inflated(*compression_of(first), packed_);
     }

@@ -20,6 +20,7 @@ from .algorithms import (
 )  # fmt: skip
 from .clock_runs import Clocks, clocks
 from .errors import Error, InputError, MissingPackage, OutputError
+from .recordings import write_recording
 from .results import Comparison, Result, compare, load, run
 from .rigs import Diagnosis, Inspection, diagnose, inspect, replay
 from .tables import table as _table
@@ -31,7 +32,7 @@ __all__ = [
     "Clocks", "Comparison", "Diagnosis", "Error", "Frame", "InputError", "Inspection",
     "MissingPackage", "OutputError", "Parameter", "Result", "Sample", "capture_alignment", "clocks",
     "compare", "describe", "device_time", "diagnose", "gathering", "host_sync", "inspect",
-    "list_scenarios", "load", "pipeline", "replay", "run",
+    "list_scenarios", "load", "pipeline", "replay", "run", "write_recording",
 ]  # fmt: skip
 
 

@@ -114,6 +114,10 @@ TEST_F(TextFileTest, OtherFilesAreNamed) {
                                 12)),
             "it is an MP4 file, no text");
   EXPECT_EQ(problem("#ROSBAG V2.0\n"), "it is a rosbag 2.0 bag, no text");
+  EXPECT_EQ(
+      problem("\x93NUMPY v"),
+      "it is a NumPy array, no text; simbench.write_recording() of the Python package makes a "
+      "CSV of it");
 }
 
 TEST_F(TextFileTest, LinesMayBeReadAgain) {
