@@ -51,7 +51,7 @@ inline std::string gzip_deflated(std::string_view plain) {
   const bool begun =
       deflateInit2(&stream, 6, Z_DEFLATED, MAX_WBITS + kGzipHead, 8, Z_DEFAULT_STRATEGY) == Z_OK;
   const bool done = begun && deflate(&stream, Z_FINISH) == Z_STREAM_END;
-  out.resize(out.size() - stream.avail_out);
+  out.resize(stream.total_out);
   if (begun) deflateEnd(&stream);
   if (!done) throw std::runtime_error("zlib does not compress");
   return out;

@@ -304,8 +304,15 @@ void TableLog::guess_unit() {
   for (const ClockLogPoint& point : log_.points) {
     if (point.error_s != 0) sizes.push_back(std::abs(point.error_s));
   }
+  const double largest = sizes.empty() ? 0 : *std::ranges::max_element(sizes);
   if (sizes.empty() || (!whole_ && median(std::move(sizes)) < kSurelySeconds)) {
     unit_ = kSecondUnit;
+    if (largest > kLargestErrorS) {
+      begin().fail(
+          fmt::format("column {}: found a time error of {:g} s among its values, allowed: "
+                      "up to {:g} s either way",
+                      quoted_bytes(name_of(columns_.error)), largest, kLargestErrorS));
+    }
     note("time errors are taken as s, by their size: no heading and no --unit says so");
     return;
   }

@@ -23,13 +23,23 @@ void expect_finite(const Stability& stability) {
   }
 }
 
+// Each set of options gets its share of the inputs.
+simbench::evaluation::ClockLogOptions options_of(std::size_t size) {
+  simbench::evaluation::ClockLogOptions options;
+  if (size % 2 != 0) options.interval_s = 1;
+  if (size / 2 % 2 != 0) options.unit = simbench::kNanosecondUnit;
+  options.frequencies = size / 4 % 2 != 0;
+  options.locked = size / 8 % 2 != 0;
+  return options;
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    const auto log = simbench::evaluation::parse_clock_log(text, "fuzz.log");
+    const auto log = simbench::evaluation::parse_clock_log(text, "fuzz.log", options_of(size));
     const auto found = simbench::evaluation::stability_of_log(log, {.remove_frequency = true});
     expect_finite(found.stability);
   } catch (const simbench::scenarios::InputError&) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scenarios/loader.h"
+#include "tests/data/file_forms.h"
 #include "tests/data/ibl_recordings.h"
 #include "tests/robustness/child.h"
 #include "tests/robustness/mutation.h"
@@ -41,11 +42,25 @@ Inputs::Inputs(std::string folder) : folder_(std::move(folder)) {
   fs::create_directories(fs::path(folder_) / kGood);
   scenarios::load_scenario("3cam_1host_30fps");  // compiles the schema, for all children
   add_files();
+  add_forms();
+  add_bags();
   add_archives();
   add_clock_archive();
   fs::copy(fs::path(folder_) / kGood, fs::path(folder_) / kTried, fs::copy_options::recursive);
   fs::create_directory(fs::path(folder_) / kWritten);
+  check_forms();
   add_arguments();
+}
+
+// A mutant of what is refused anyway finds little.
+void Inputs::check_forms() const {
+  for (const Kind& kind : kinds_) {
+    if (!kind.name.starts_with("forms/")) continue;
+    const Ending ending = call({.arguments = resolved(kind.commands.front(), "")});
+    if (ending.status != 0) {
+      throw std::runtime_error(fmt::format("{}: {}", kind.name, ending.messages));
+    }
+  }
 }
 
 void Inputs::copy(const std::string& from, const std::string& to) const {
@@ -93,17 +108,6 @@ void Inputs::add_files() {
   put(ibl + "left.frameData.bin", ibl_frame_data({.frames = 100}));
   add({"ibl", 4, files_of("ibl"), {{"convert-ibl", "%"}}});
 
-  fs::create_directories(fs::path(folder_) / kGood / "clock_log");
-  for (const auto& entry :
-       fs::directory_iterator(fs::path(SIMBENCH_SOURCE_DIR) / "tests/fuzz/corpus/stability_log")) {
-    const std::string name = entry.path().filename();
-    copy("tests/fuzz/corpus/stability_log/" + name, "clock_log/" + name);
-  }
-  add({"clock_log",
-       4,
-       files_of("clock_log"),
-       {{"stability", "%"}, {"stability", "%", "--remove-frequency", "--format", "json"}}});
-
   fs::create_directories(fs::path(folder_) / kGood / "rig");
   put(folder_ + "/" + kGood + "/rig/rig.json", kRig);
   add({"rig",
@@ -111,6 +115,42 @@ void Inputs::add_files() {
        files_of("rig"),
        {{"record", "--backend", "hardware", "--scenario", "3cam_1host_30fps", "--pipelines",
          "genlock", "--rig", "%", "--output", "@written/recording"}}});
+}
+
+// Logs, tables and lists of stamps in every form that docs/files.md has, by that page's commands.
+void Inputs::add_forms() {
+  const fs::path folder = fs::path(folder_) / kGood / "forms";
+  for (const auto& [name, text] : file_forms()) {
+    fs::create_directories((folder / name).parent_path());
+    put(folder / name, text);
+  }
+  for (std::vector<std::string> command : commands_of_files_page()) {
+    std::vector<std::string> files;
+    for (std::size_t i = 1; i < command.size(); ++i) {
+      const fs::path input = folder / command[i];
+      if (!fs::exists(input)) continue;
+      const std::string name = "forms/" + command[i];
+      const std::vector<std::string> of_folder =
+          fs::is_directory(input) ? files_of(name) : std::vector<std::string>{name};
+      files.insert(files.end(), of_folder.begin(), of_folder.end());
+      command[i] = "@tried/" + name;
+    }
+    // A bag and a video are no text.
+    if (!files.empty()) add({files.front(), 1, files, {command}});
+  }
+}
+
+void Inputs::add_bags() {
+  for (const char* format : {"mcap", "rosbag", "sqlite_bag"}) {
+    const fs::path corpus = fs::path(SIMBENCH_SOURCE_DIR) / "tests/fuzz/corpus" / format;
+    for (const auto& entry : fs::directory_iterator(corpus)) {
+      const std::string name = entry.path().filename();
+      if (name != "cut")
+        copy(fmt::format("tests/fuzz/corpus/{}/{}", format, name),
+             fmt::format("{}/{}", format, name));
+    }
+    add({format, 2, files_of(format), {{"inspect", "%"}, {"inspect", "%", "--format", "json"}}});
+  }
 }
 
 // Folders that simbench has written.

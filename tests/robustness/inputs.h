@@ -54,6 +54,9 @@ class Inputs {
   std::vector<std::string> resolved(std::vector<std::string> command,
                                     const std::string& file) const;
   void add_files();
+  void add_forms();
+  void add_bags();
+  void check_forms() const;
   void add_archives();
   void add_clock_archive();
   void add_arguments();

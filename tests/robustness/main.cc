@@ -8,6 +8,9 @@
 // Whatever the input, a command ends in 10 s, within 1 GB, without a signal or an internal error,
 // prints neither nan nor inf, and hears Ctrl-C within 1 s (tests/robustness/child.h).
 //
+// How many were accepted all the same is printed by kind: a reader that refuses every mutant is not
+// tried behind its first lines.
+//
 // Attempts are numbered; with INDEX only that one is made, and its command line and messages are
 // printed.
 // Exit status: 0 all fine, 1 a problem (each is printed with the command that repeats it), 2 usage.
@@ -23,6 +26,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <thread>
@@ -49,6 +53,7 @@ struct Settings {
 };
 
 struct Result {
+  std::string kind;
   std::vector<std::string> arguments;
   Ending ending;
   std::optional<std::string> problem;
@@ -63,7 +68,7 @@ Result try_mutant(Inputs& inputs, Random& random) {
   const Ending ending =
       call({.arguments = attempt.arguments, .interrupt_after_s = kLatestInterruptS});
   inputs.restore(attempt);
-  return {attempt.arguments, ending, problem_of(ending, attempt.input)};
+  return {attempt.kind, attempt.arguments, ending, problem_of(ending, attempt.input)};
 }
 
 Result try_fault(Inputs& inputs, Random& random) {
@@ -73,7 +78,7 @@ Result try_fault(Inputs& inputs, Random& random) {
                               .interrupt_after_s = kLatestInterruptS,
                               .fault = ReadFault{inputs.folder(), bytes}});
   inputs.restore(attempt);
-  return {attempt.arguments, ending, problem_of(ending)};
+  return {attempt.kind, attempt.arguments, ending, problem_of(ending)};
 }
 
 Result try_world(const Worlds& worlds, Random& random) {
@@ -81,7 +86,7 @@ Result try_world(const Worlds& worlds, Random& random) {
   const double interrupt_after_s =
       random.one_in(3) ? random.log_between(1e-3, kLatestInterruptS) : kLatestInterruptS;
   const Ending ending = call({.arguments = arguments, .interrupt_after_s = interrupt_after_s});
-  return {arguments, ending, problem_of(ending)};
+  return {"worlds", arguments, ending, problem_of(ending)};
 }
 
 // "--set '/a=b'": arguments as a shell takes them.
@@ -99,8 +104,36 @@ void print_problem(const Settings& settings, std::uint64_t index, const Result& 
   std::fflush(stdout);
 }
 
+// How many attempts of a kind there were, and how many ended well.
+struct Count {
+  std::uint64_t accepted = 0;
+  std::uint64_t made = 0;
+};
+using Counts = std::map<std::string, Count>;
+
+std::string counts_text(const Counts& counts) {
+  std::string text;
+  for (const auto& [kind, count] : counts) {
+    text += fmt::format("{} {} {}\n", count.accepted, count.made, kind);
+  }
+  return text;
+}
+
+// Adds what workers have written.
+Counts counts_in(std::FILE* lines) {
+  Counts counts;
+  unsigned long long accepted = 0;
+  unsigned long long made = 0;
+  char kind[128];
+  while (std::fscanf(lines, "%llu %llu %127s", &accepted, &made, kind) == 3) {
+    counts[kind].accepted += accepted;
+    counts[kind].made += made;
+  }
+  return counts;
+}
+
 // Every `workers`th attempt from `first` on; returns whether all were fine.
-bool work(const Settings& settings, unsigned first, unsigned workers) {
+bool work(const Settings& settings, unsigned first, unsigned workers, Counts& counts) {
   const ScratchFolder folder;
   std::optional<Inputs> inputs;
   std::optional<Worlds> worlds;
@@ -128,6 +161,10 @@ bool work(const Settings& settings, unsigned first, unsigned workers) {
   for (std::uint64_t index = first; index < settings.count && problems < kMostReports;
        index += workers) {
     const Result result = attempt(index);
+    Count& count = counts[result.kind];
+    ++count.made;
+    // 3 is a verdict.
+    if (result.ending.status == 0 || result.ending.status == 3) ++count.accepted;
     if (!result.problem) continue;
     ++problems;
     print_problem(settings, index, result);
@@ -135,9 +172,9 @@ bool work(const Settings& settings, unsigned first, unsigned workers) {
   return problems == 0;
 }
 
-bool work_guarded(const Settings& settings, unsigned first, unsigned workers) {
+bool work_guarded(const Settings& settings, unsigned first, unsigned workers, Counts& counts) {
   try {
-    return work(settings, first, workers);
+    return work(settings, first, workers, counts);
   } catch (const std::exception& error) {
     fmt::print("robustness: {}\n", error.what());
     return false;
@@ -146,18 +183,29 @@ bool work_guarded(const Settings& settings, unsigned first, unsigned workers) {
 
 // A process for each core, since processes with threads are not forked.
 bool run(const Settings& settings) {
-  if (settings.index) return work_guarded(settings, 0, 1);
+  Counts counts;
+  if (settings.index) return work_guarded(settings, 0, 1, counts);
   const unsigned workers = std::max(1U, std::thread::hardware_concurrency());
+  std::FILE* const counted = std::tmpfile();
+  if (counted == nullptr) throw std::runtime_error("no temporary file");
   std::fflush(stdout);
   for (unsigned worker = 0; worker < workers; ++worker) {
     const pid_t process = fork();
     if (process != 0) continue;
-    const bool fine = work_guarded(settings, worker, workers);
+    const bool fine = work_guarded(settings, worker, workers, counts);
     std::fflush(stdout);
-    _exit(fine ? 0 : 1);
+    const std::string text = counts_text(counts);
+    const bool told =
+        write(fileno(counted), text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    _exit(fine && told ? 0 : 1);
   }
   bool fine = true;
   for (int status = 0; wait(&status) > 0;) fine = fine && status == 0;
+  std::rewind(counted);
+  for (const auto& [kind, count] : counts_in(counted)) {
+    fmt::print("{}: {} of {} accepted\n", kind, count.accepted, count.made);
+  }
+  std::fclose(counted);
   fmt::print("{} {}, seed {}: {}\n", settings.count, settings.mode, settings.seed,
              fine ? "fine" : "problems");
   return fine;

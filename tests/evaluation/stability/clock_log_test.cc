@@ -223,6 +223,14 @@ TEST(ClockLog, ReadsTheOtherLogsOfChrony) {
   EXPECT_THAT(seconds(tracking), ElementsAre(1725359542.5, 1725359606.5));
 }
 
+// One value that is damaged among small ones, whose unit is found by their size.
+TEST(ClockLog, AnErrorThatNoClockHasIsRefusedWhateverTheUnit) {
+  const std::string text = "1e-7\n2e-7\n1e-7\n2e15\n1e-7\n";
+  EXPECT_THAT(problem(text, {.interval_s = 1}), HasSubstr("found a time error of 2e+15 s"));
+  EXPECT_THAT(problem(text, {.unit = kSecondUnit, .interval_s = 1}),
+              HasSubstr(":4: time error: found '2e15'"));
+}
+
 // NtpOffset is what has to be added to the local clock; FILETIME counts 100 ns from 1601.
 TEST(ClockLog, W32tmsTableOfProcessorCounts) {
   const ClockLog log = parsed(
