@@ -39,7 +39,7 @@ namespace simbench::bags {
 // A topic with more frame ids is one camera's: drivers that count in them are known. Topics and
 // frame ids of cameras beyond the second limit are left out, with a note.
 inline constexpr std::size_t kMostFrameIds = 64;
-inline constexpr std::size_t kMostTracks = 4096;
+inline constexpr std::size_t kMostTracks = kMostRecordedStreams;
 
 struct BagScan {
   BagFacts facts;

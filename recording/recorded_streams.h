@@ -6,6 +6,7 @@
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
@@ -44,6 +45,9 @@ struct RecordedStream {
   bool stamped_by_host = false;
   StreamOrigin origin{};
 };
+
+// No rig has more; a file that names more is refused, or read up to there with a note.
+inline constexpr std::size_t kMostRecordedStreams = 4096;
 
 struct RecordedStreams {
   std::vector<RecordedStream> streams;

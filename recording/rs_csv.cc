@@ -333,6 +333,10 @@ RecordedStream& CsvRecordingReader::File::stream_of(std::string_view camera, std
   if (known == reader_.index_.end()) {
     const Naming& naming = naming_of(camera, host);
     const std::size_t number = reader_.streams_.size();
+    if (number == kMostRecordedStreams) {
+      place_.fail("found more than " + std::to_string(kMostRecordedStreams) +
+                  " streams of cameras, allowed: at most so many; has the column `camera` names?");
+    }
     known = reader_.index_.emplace(key_, Known{number, &naming}).first;
     reader_.streams_.push_back(
         {printable_name(camera), printable_name(naming.host), printable_name(name), {}});

@@ -22,8 +22,9 @@
 // for it. Rows without a stamp (empty, NaN) are left out and counted.
 //
 // What may be wrong is refused, with its line: more or fewer cells than the header has, a column
-// that stands twice, a camera on two hosts. A last line without its line end may be cut in
-// mid-number: it is left out, with a note. Names have control characters as \xHH.
+// that stands twice, a camera on two hosts, more streams than any rig has. A last line without its
+// line end may be cut in mid-number: it is left out, with a note. Names have control characters as
+// \xHH.
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped here.
 // Complexity: linear in the text; memory: that of the frames. Source: docs/reference/d455.md

@@ -74,6 +74,29 @@ TEST(RsCsv, SeveralCamerasInOneFile) {
   EXPECT_EQ(streams[1].camera, "right");
 }
 
+TEST(RsCsv, StreamsHaveALimit) {
+  std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),camera\n";
+  for (std::size_t camera = 0; camera < kMostRecordedStreams; ++camera) {
+    text += "Depth,0,1,1,1,c" + std::to_string(camera) + "\n";
+  }
+  CsvRecordingReader reader;
+  reader.read_text(text, "rig.csv");
+  EXPECT_EQ(reader.take().size(), kMostRecordedStreams);
+  EXPECT_THAT(refusal(text + "Depth,0,1,1,1,more\n"),
+              HasSubstr(":4098: found more than 4096 streams of cameras"));
+}
+
+TEST(RsCsv, WithoutACounterFramesCountAsTheyCome) {
+  CsvRecordingReader reader;
+  reader.read_text(
+      "Stream Type,Index,HW Timestamp (ms),Host Timestamp(ms)\nDepth,0,1,2\nDepth,0,34,36\n",
+      "front.csv");
+  const std::vector<RecordedStream> streams = reader.take();
+  ASSERT_EQ(streams.size(), 1U);
+  EXPECT_FALSE(streams[0].counted);
+  EXPECT_EQ(streams[0].frames[1].counter, streams[0].frames[0].counter + 1);
+}
+
 TEST(RsCsv, ACameraGoesOnInTheNextFile) {
   CsvRecordingReader reader;
   const std::string header = "camera," + kHeader;
