@@ -59,6 +59,33 @@ bool is_compressed_whole(const std::string& path) {
 
 namespace {
 
+// Passes on as many messages as a file may have; the reader knows the size of its file unpacked
+// alone.
+class BoundedSink final : public BagSink {
+ public:
+  BoundedSink(BagSink& sink, std::uint64_t file_bytes) : sink_(sink), budget_(file_bytes) {}
+  std::size_t on_topic(std::uint32_t number, const BagTopic& topic) override {
+    return sink_.on_topic(number, topic);
+  }
+  void on_message(const BagMessage& message) override {
+    if (spent_.empty()) {
+      try {
+        budget_.take_message();
+      } catch (const BudgetSpent& spent) {
+        spent_ = spent.what();
+      }
+    }
+    if (spent_.empty()) sink_.on_message(message);
+  }
+  // What was left out; empty: nothing.
+  const std::string& spent() const { return spent_; }
+
+ private:
+  BagSink& sink_;
+  ReadBudget budget_;
+  std::string spent_;
+};
+
 // The plain bytes of a file that is compressed as a whole, as a file of their own.
 class UnpackedBag {
  public:
@@ -66,23 +93,28 @@ class UnpackedBag {
     FileBytes compressed(path);
     compressed_size_ = compressed.size();
     const std::unique_ptr<ByteStream> plain = inflated(Compression::kZstd, compressed);
-    ReadBudget budget(compressed_size_);
     AppendFile file(path_);
     try {
-      while (copy_block(*plain, budget, file)) {
+      while (copy_block(*plain, file)) {
+        if (plain_size_ > kLeastPlain + kPlainAByte * compressed_size_) {
+          lost_ = fmt::format(
+              "{}: found more than {} times its bytes when inflated; the rest is left "
+              "out",
+              path, kPlainAByte);
+          break;
+        }
       }
     } catch (const InflateError& error) {
       lost_ = fmt::format("{}: {}; the rest is lost", path, error.what());
-    } catch (const BudgetSpent& error) {
-      lost_ = fmt::format("{}: {}", path, error.what());
     }
     file.close();
   }
 
   BagFacts read(BagSink& sink, const ReadProgress& progress) {
     BagFacts facts;
+    BoundedSink bounded(sink, compressed_size_);
     try {
-      facts = read_bag(path_, sink, [&](std::uint64_t done, std::uint64_t) {
+      facts = read_bag(path_, bounded, [&](std::uint64_t done, std::uint64_t) {
         // In bytes of the file that the user has.
         if (progress) progress(scaled(done), compressed_size_);
       });
@@ -91,6 +123,7 @@ class UnpackedBag {
     }
     for (std::string& note : facts.notes) note = renamed(note);
     facts.description += ", compressed as a whole (zstd)";
+    if (!bounded.spent().empty()) facts.notes.push_back(of_ + ": " + bounded.spent());
     if (!lost_.empty()) {
       facts.notes.push_back(lost_);
       facts.indexed = false;
@@ -100,9 +133,12 @@ class UnpackedBag {
 
  private:
   static constexpr std::size_t kBlock = std::size_t{256} << 10;
+  // As of a text that is compressed (recording/text_file.h).
+  static constexpr std::uint64_t kLeastPlain = std::uint64_t{64} << 20;
+  static constexpr std::uint64_t kPlainAByte = 128;
 
   // False at the end.
-  bool copy_block(ByteStream& plain, ReadBudget& budget, AppendFile& file) {
+  bool copy_block(ByteStream& plain, AppendFile& file) {
     std::string& block = file.buffer();
     block.resize(kBlock);
     std::size_t size = 0;
@@ -115,7 +151,6 @@ class UnpackedBag {
     block.resize(size);
     file.flush();
     plain_size_ += size;
-    budget.take_plain(size);
     return size > 0;
   }
   std::uint64_t scaled(std::uint64_t done) const {

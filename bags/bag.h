@@ -94,7 +94,7 @@ struct BagFacts {
 std::optional<BagFormat> bag_format(const std::string& path);
 std::string_view to_text(BagFormat format);
 // Whether the file as a whole is compressed by zstd, as rosbag2 can do; read_bag() unpacks such a
-// one among the temporary files, as far as it may (bags/read_budget.h). Throws FileError.
+// one among the temporary files, up to 64 MiB and 128 bytes more for each. Throws FileError.
 bool is_compressed_whole(const std::string& path);
 
 // `progress` counts bytes of the file; what it throws ends the reading, as what the sink throws.

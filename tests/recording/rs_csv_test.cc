@@ -86,7 +86,7 @@ TEST(RsCsv, StreamsHaveALimit) {
               HasSubstr(":4098: found more than 4096 streams of cameras"));
 }
 
-TEST(RsCsv, WithoutACounterFramesCountAsTheyCome) {
+TEST(RsCsv, TheToolsFormWithoutACounterIsRead) {
   CsvRecordingReader reader;
   reader.read_text(
       "Stream Type,Index,HW Timestamp (ms),Host Timestamp(ms)\nDepth,0,1,2\nDepth,0,34,36\n",
