@@ -215,10 +215,6 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
 
 double skew_of_slope_ppm(double slope) { return -slope / (1 + slope) * 1e6; }
 
-double RigFit::drop_share() const {
-  return static_cast<double>(lost) / static_cast<double>(delivered + lost);
-}
-
 std::vector<double> quantile_table(const std::vector<double>& sorted) {
   const std::size_t size = std::min(kLongestTable, sorted.size());
   std::vector<double> table;
@@ -236,15 +232,18 @@ RigFit fit_rig(const FitInput& input) {
     fit.streams.push_back(fit_stream(input.cameras[stream.camera].name, stream));
     const StreamFit& added = fit.streams.back();
     fit.frames += added.frames;
-    fit.delivered += added.account.delivered;
-    fit.lost += added.account.lost;
+    if (stream.counted) {
+      if (!fit.drops) fit.drops.emplace();
+      fit.drops->lost += added.account.lost;
+      fit.drops->counted += added.account.delivered + added.account.lost;
+    }
     fit.excess_ms.insert(fit.excess_ms.end(), added.excess_ms.begin(), added.excess_ms.end());
   }
   fit.skew_ppm = skews_of(input, fit.streams);
   std::sort(fit.excess_ms.begin(), fit.excess_ms.end());
   fit.delivery_quantiles_ms = quantile_table(fit.excess_ms);
   fit.correlation = correlation_of(fit.streams);
-  fit.drop_interval = binomial_interval(fit.lost, fit.delivered + fit.lost);
+  if (fit.drops) fit.drops->interval = binomial_interval(fit.drops->lost, fit.drops->counted);
   fit.network = fit_exchanges(input);
   return fit;
 }

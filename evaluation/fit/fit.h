@@ -120,6 +120,15 @@ double skew_of_slope_ppm(double slope);
 
 inline constexpr std::size_t kLongestTable = 1001;
 
+// Frames that the cameras counted and that never arrived.
+struct DropFit {
+  std::int64_t lost = 0;
+  std::int64_t counted = 0;  // with the lost ones
+  Interval interval{};       // of the share, 95 %
+
+  double share() const { return static_cast<double>(lost) / static_cast<double>(counted); }
+};
+
 struct RigFit {
   std::vector<StreamFit> streams;
   std::vector<FittedValue> skew_ppm;  // by camera
@@ -127,12 +136,8 @@ struct RigFit {
   std::vector<double> delivery_quantiles_ms;
   std::optional<FittedValue> correlation;  // nothing: too few pairs, or no jitter at all
   std::int64_t frames = 0;
-  std::int64_t delivered = 0;  // of the whole recording, as are the lost ones
-  std::int64_t lost = 0;
-  Interval drop_interval;  // 95 %
+  std::optional<DropFit> drops;  // of the whole recording; nothing: no stream counts its frames
   NetworkFit network;
-
-  double drop_share() const;
 };
 
 RigFit fit_rig(const FitInput& input);

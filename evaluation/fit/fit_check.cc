@@ -15,8 +15,7 @@ FitSide fit_side(const RigFit& fit) {
   }
   side.skew_ppm = fit.skew_ppm;
   side.correlation = fit.correlation;
-  side.drop_share = fit.drop_share();
-  side.drop_interval = fit.drop_interval;
+  side.drops = fit.drops;
   return side;
 }
 
@@ -45,8 +44,8 @@ FitCheck check_fit(const RigFit& recorded, const scenarios::Scenario& model,
   constexpr std::int64_t kFewest = 1000;
   constexpr std::int64_t kMost = 200'000;
   const auto streams = static_cast<std::int64_t>(recorded.streams.size());
-  const std::int64_t pulses =
-      std::clamp((recorded.frames + recorded.lost) / streams, kFewest, kMost);
+  const std::int64_t lost = recorded.drops ? recorded.drops->lost : 0;
+  const std::int64_t pulses = std::clamp((recorded.frames + lost) / streams, kFewest, kMost);
   const RigFit simulated = simulate_fit(model, pulses, make_world);
   FitCheck check;
   check.recorded = fit_side(recorded);

@@ -38,8 +38,7 @@ struct FitSide {
   std::array<double, kFitQuantiles.size()> excess_ms{};
   std::vector<FittedValue> skew_ppm;  // by camera
   std::optional<FittedValue> correlation;
-  double drop_share = 0;
-  Interval drop_interval;
+  std::optional<DropFit> drops;  // nothing: no stream counts its frames
 };
 
 struct FitCheck {

@@ -111,8 +111,11 @@ FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host) {
     });
     std::vector<StampedFrame> frames = unwrapped(stream.frames);
     const FrameAccount account = frame_account(frames, stream.counted);
-    input.streams.push_back(
-        {.camera = camera, .kind = stream.stream, .frames = std::move(frames), .account = account});
+    input.streams.push_back({.camera = camera,
+                             .kind = stream.stream,
+                             .frames = std::move(frames),
+                             .account = account,
+                             .counted = stream.counted});
   }
   return input;
 }
@@ -125,8 +128,9 @@ std::pair<FitInput, FitInput> halves(const FitInput& input) {
     const auto middle = static_cast<std::ptrdiff_t>(first.size() / 2);
     first.erase(first.begin() + middle, first.end());
     second.erase(second.begin(), second.begin() + middle);
-    result.first.streams[i].account = frame_account(first, /*counted=*/true);
-    result.second.streams[i].account = frame_account(second, /*counted=*/true);
+    const bool counted = input.streams[i].counted;
+    result.first.streams[i].account = frame_account(first, counted);
+    result.second.streams[i].account = frame_account(second, counted);
   }
   return result;
 }

@@ -44,6 +44,7 @@ struct FitStream {
   std::string kind;
   std::vector<StampedFrame> frames;
   FrameAccount account{};  // of the whole recording, also of what is discarded at its start
+  bool counted = true;     // by the camera: the account knows lost frames
 };
 
 struct FitInput {

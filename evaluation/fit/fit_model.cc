@@ -68,10 +68,11 @@ std::string correlation_line(const RigFit& fit) {
 }
 
 std::string drop_line(const RigFit& fit) {
+  if (!fit.drops) return "/cameras/drop_probability: that of the base, not identified";
   return fmt::format(
       "/cameras/drop_probability: {} of {} frames lost by the counters, 95 % interval {:.3g} to "
       "{:.3g}",
-      fit.lost, fit.delivered + fit.lost, fit.drop_interval.low, fit.drop_interval.high);
+      fit.drops->lost, fit.drops->counted, fit.drops->interval.low, fit.drops->interval.high);
 }
 
 // The root mean square of the existing values.
@@ -229,7 +230,7 @@ Json cameras_json(const RigFit& fit, const FitInput& input, const FitBase& base,
   Json cameras = places_of(input);
   const std::vector<double> skews = collected(fit.skew_ppm, &FittedValue::value);
   cameras["skew_of_camera_ppm"] = tables.mark(skews, 4);
-  cameras["drop_probability"] = rounded(fit.drop_share(), 1e-9);
+  if (fit.drops) cameras["drop_probability"] = rounded(fit.drops->share(), 1e-9);
   cameras["sensor_stamp_jitter_sigma_us"] = 0;
   if (base.mode_rate_hz) {
     Json streams = Json::parse(base.scenario.resolved_json())["cameras"]["streams"];
@@ -329,6 +330,7 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
         "is in the measured delays as well and counts twice",
         to_text(base.usb.sharing)));
   }
+  if (!fit.drops) lines.emplace_back("lost frames: these cameras do not count their frames");
   if (const std::vector<std::string> names = cameras_from_1970(input); !names.empty()) {
     lines.push_back(fmt::format(
         "the oscillator of {}: stamps that count from 1970 are of a clock that is set (of a "

@@ -25,8 +25,10 @@ std::string estimate_text(const std::optional<FittedValue>& estimate) {
 }
 
 std::string drop_text(const FitSide& side) {
-  return fmt::format("{} [{}-{}]", share_text(side.drop_share), share_text(side.drop_interval.low),
-                     share_text(side.drop_interval.high));
+  if (!side.drops) return "not counted";
+  const evaluation::DropFit& drops = *side.drops;
+  return fmt::format("{} [{}-{}]", share_text(drops.share()), share_text(drops.interval.low),
+                     share_text(drops.interval.high));
 }
 
 std::string lines_text(const std::string& heading, const std::vector<std::string>& lines) {
@@ -72,9 +74,10 @@ Json fitted_json(const std::optional<FittedValue>& estimate) {
 }
 
 Json share_json(const FitSide& side) {
-  return {{"value", side.drop_share},
-          {"low", side.drop_interval.low},
-          {"high", side.drop_interval.high}};
+  if (!side.drops) return nullptr;
+  return {{"value", side.drops->share()},
+          {"low", side.drops->interval.low},
+          {"high", side.drops->interval.high}};
 }
 
 Json fit_check_json(const char* name, const FitCheck& check,

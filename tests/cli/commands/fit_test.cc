@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/cli/commands/rs_csv_files.h"
@@ -79,6 +80,25 @@ TEST_F(FitCommand, StampsThatCountFrom1970AreFittedAndNamed) {
   const Json root = Json::parse(fitted.out);
   EXPECT_NEAR(root["checks"][0]["skew_ppm"][0]["recorded"]["value"].get<double>(), 100, 0.5);
   EXPECT_THAT(root["not_identified"].dump(), HasSubstr("the oscillator of ptp: stamps that count"));
+}
+
+// Whether frames were lost is unknown then, and the model keeps what the base has.
+TEST_F(FitCommand, WithoutCountersNoFrameIsCalledLostOrKept) {
+  std::string text = "sensor_ms,arrival_ms\n";
+  std::istringstream lines(recording(600));
+  std::string line;
+  std::getline(lines, line);
+  for (int i = 0; std::getline(lines, line); ++i) {
+    if (i % 10 != 7) text += line.substr(line.find(',', line.find(',', 6) + 1) + 1) + "\n";
+  }
+  const ProgramResult fitted =
+      run({"fit", file("a.csv", text), "--columns", "sensor=sensor_ms,arrival=arrival_ms", "-o",
+           "model.json", "--format", "json"});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const Json root = Json::parse(fitted.out);
+  EXPECT_TRUE(root["checks"][0]["drop_share"]["recorded"].is_null());
+  EXPECT_THAT(root["not_identified"].dump(), HasSubstr("lost frames: these cameras do not count"));
+  EXPECT_FALSE(Json::parse(content("model.json"))["cameras"].contains("drop_probability"));
 }
 
 TEST_F(FitCommand, AnIblRecordingAgreesWithItsSimulatedModel) {

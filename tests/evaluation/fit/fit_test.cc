@@ -68,7 +68,8 @@ TEST(Fit, GivesBackWhatWasSimulated) {
     ASSERT_TRUE(fit.correlation) << "seed " << seed;
     EXPECT_NEAR(fit.correlation->value, 0.4, 5 * fit.correlation->error) << "seed " << seed;
     // Clopper and Pearson's interval is of 95 %: 5 standard errors never fail.
-    EXPECT_NEAR(fit.drop_share(), 0.05, 5 * std::sqrt(0.05 * 0.95 / 4500)) << "seed " << seed;
+    EXPECT_NEAR(fit.drops.value().share(), 0.05, 5 * std::sqrt(0.05 * 0.95 / 4500))
+        << "seed " << seed;
     for (const double p : {0.1, 0.5, 0.9, 0.99}) {
       const double expected = -0.3 * std::log1p(-p);
       // The error of an order statistic: sqrt(p (1 - p) / n) / density, n reduced by the
@@ -93,8 +94,8 @@ TEST(Fit, TheSimulatedModelAgreesWithItsRecording) {
       EXPECT_NEAR(found.value, study.whole.recorded.skew_ppm[i].value, 5 * found.error + 0.02)
           << "camera " << i << ", seed " << seed;
     }
-    EXPECT_NEAR(study.whole.simulated.drop_share, study.whole.recorded.drop_share,
-                5 * std::sqrt(2 * 0.05 * 0.95 / 4500))
+    EXPECT_NEAR(study.whole.simulated.drops.value().share(),
+                study.whole.recorded.drops.value().share(), 5 * std::sqrt(2 * 0.05 * 0.95 / 4500))
         << "seed " << seed;
   }
 }
