@@ -86,37 +86,29 @@ class BoundedSink final : public BagSink {
   std::string spent_;
 };
 
-// The plain bytes of a file that is compressed as a whole, as a file of their own.
+// The plain bytes of a file that is compressed as a whole, as a file of their own. Unpacking is the
+// first half of the progress, reading the second.
 class UnpackedBag {
  public:
-  explicit UnpackedBag(const std::string& path) : of_(path), path_(folder_.file("bag")) {
+  UnpackedBag(const std::string& path, const ReadProgress& progress)
+      : of_(path), path_(folder_.file("bag")), progress_(progress) {
     FileBytes compressed(path);
     compressed_size_ = compressed.size();
-    const std::unique_ptr<ByteStream> plain = inflated(Compression::kZstd, compressed);
-    AppendFile file(path_);
     try {
-      while (copy_block(*plain, file)) {
-        if (plain_size_ > kLeastPlain + kPlainAByte * compressed_size_) {
-          lost_ = fmt::format(
-              "{}: found more than {} times its bytes when inflated; the rest is left "
-              "out",
-              path, kPlainAByte);
-          break;
-        }
-      }
-    } catch (const InflateError& error) {
-      lost_ = fmt::format("{}: {}; the rest is lost", path, error.what());
+      copy(*inflated(Compression::kZstd, compressed), compressed);
+    } catch (const RecordingFolderError& error) {
+      throw BagError(path + ": cannot be unpacked: " + error.what() +
+                     "; TMPDIR names another place for temporary files");
     }
-    file.close();
   }
 
-  BagFacts read(BagSink& sink, const ReadProgress& progress) {
+  BagFacts read(BagSink& sink) {
     BagFacts facts;
     BoundedSink bounded(sink, compressed_size_);
     try {
       facts = read_bag(path_, bounded, [&](std::uint64_t done, std::uint64_t) {
         // In bytes of the file that the user has.
-        if (progress) progress(scaled(done), compressed_size_);
+        report((compressed_size_ + scaled(done)) / 2);
       });
     } catch (const BagError& error) {
       throw BagError(renamed(error.what()) + (lost_.empty() ? "" : "; " + lost_));
@@ -137,6 +129,23 @@ class UnpackedBag {
   static constexpr std::uint64_t kLeastPlain = std::uint64_t{64} << 20;
   static constexpr std::uint64_t kPlainAByte = 128;
 
+  // As far as the bytes are good, and as many as there may be.
+  void copy(ByteStream& plain, const FileBytes& compressed) {
+    AppendFile file(path_);
+    try {
+      while (copy_block(plain, file)) {
+        report(compressed.position() / 2);
+        if (plain_size_ <= kLeastPlain + kPlainAByte * compressed_size_) continue;
+        lost_ = fmt::format(
+            "{}: found more than {} times its bytes when inflated; the rest is left out", of_,
+            kPlainAByte);
+        break;
+      }
+    } catch (const InflateError& error) {
+      lost_ = fmt::format("{}: {}; the rest is lost", of_, error.what());
+    }
+    file.close();
+  }
   // False at the end.
   bool copy_block(ByteStream& plain, AppendFile& file) {
     std::string& block = file.buffer();
@@ -153,6 +162,9 @@ class UnpackedBag {
     plain_size_ += size;
     return size > 0;
   }
+  void report(std::uint64_t done) const {
+    if (progress_) progress_(done, compressed_size_);
+  }
   std::uint64_t scaled(std::uint64_t done) const {
     const double share =
         static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(plain_size_, 1));
@@ -167,6 +179,7 @@ class UnpackedBag {
   std::string of_;
   TemporaryFolder folder_;
   std::string path_;
+  const ReadProgress& progress_;
   std::uint64_t compressed_size_ = 0;
   std::uint64_t plain_size_ = 0;
   std::string lost_;
@@ -177,7 +190,7 @@ class UnpackedBag {
 BagFacts read_bag(const std::string& path, BagSink& sink, const ReadProgress& progress) {
   try {
     const std::optional<BagFormat> format = bag_format(path);
-    if (!format && is_compressed_whole(path)) return UnpackedBag(path).read(sink, progress);
+    if (!format && is_compressed_whole(path)) return UnpackedBag(path, progress).read(sink);
     if (!format) {
       throw BagError(path +
                      ": found no bag, allowed: rosbag 2.0 (also of the RealSense SDK), MCAP, or "
@@ -193,9 +206,6 @@ BagFacts read_bag(const std::string& path, BagSink& sink, const ReadProgress& pr
     }
   } catch (const FileError& error) {
     throw BagError(path + ": cannot be read: " + error.what());
-  } catch (const RecordingFolderError& error) {
-    throw BagError(path + ": cannot be unpacked: " + error.what() +
-                   "; TMPDIR names another place for temporary files");
   }
   return {};
 }

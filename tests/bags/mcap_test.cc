@@ -117,6 +117,15 @@ TEST(Mcap, AFileThatIsCompressedAsAWholeAndCutIsReadUpToThere) {
   EXPECT_THAT(facts.notes, testing::Contains(HasSubstr("the rest is lost")));
 }
 
+TEST(Mcap, ProgressMayEndTheUnpacking) {
+  const ScratchFolder folder;
+  const std::string path = folder.write("rig.mcap.zstd", deflated("zstd", small_mcap({})));
+  struct Enough {};
+  KeptBag bag;
+  EXPECT_THROW(read_bag(path, bag, [](std::uint64_t, std::uint64_t) { throw Enough(); }), Enough);
+  EXPECT_EQ(bag.messages.size(), 0U);
+}
+
 // The file unpacked may have more messages than the one that the user has.
 TEST(Mcap, AFileThatIsCompressedAsAWholeMayNotBecomeAnything) {
   const ScratchFolder folder;
