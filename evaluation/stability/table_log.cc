@@ -51,11 +51,13 @@ struct TableColumns {
 // The columns that tell series apart: of a pipeline, a seed, a host.
 using KeyColumns = std::array<std::size_t, 3>;
 
+// A heading may be longer than the rows: what they do not have tells nothing apart.
 KeyColumns key_columns(const TableReader& table) {
   constexpr std::array<std::array<std::string_view, 3>, 3> kNames = {
       {{"pipeline", "program", "run"}, {"seed", "process", "port"}, {"host", "source", "clock"}}};
   KeyColumns keys{kNoColumn, kNoColumn, kNoColumn};
-  for (std::size_t i = 0; i < table.heading().size(); ++i) {
+  const std::size_t named = std::min(table.heading().size(), table.first_row().size());
+  for (std::size_t i = 0; i < named; ++i) {
     const std::string letters = small_letters(table.heading()[i]);
     for (std::size_t key = 0; key < kNames.size(); ++key) {
       if (std::ranges::find(kNames[key], letters) != kNames[key].end()) keys[key] = i;
@@ -145,6 +147,11 @@ void TableLog::find_columns() {
   }
   if (columns_.time == kNoColumn && values.size() > 1) columns_.time = values.front();
   columns_.error = named_column(values);
+  if (options_.frequencies && has_keys(keys_)) {
+    begin().fail(
+        "found columns that tell several series apart, allowed with --frequencies: one "
+        "series");
+  }
   if (columns_.time != kNoColumn) return;
   if (!options_.interval_s) {
     begin().fail(
@@ -170,7 +177,7 @@ std::size_t TableLog::named_column(const std::vector<std::size_t>& values) const
                     "--series with the name or the number of the second: {}",
                     values.size(), fmt::join(names, ", ")));
   }
-  for (std::size_t column = 0; column < table_.heading().size(); ++column) {
+  for (std::size_t column = 0; column < std::min(table_.heading().size(), cells_); ++column) {
     if (table_.heading()[column] == options_.series) return column;
   }
   const std::optional<std::size_t> number = number_in<std::size_t>(options_.series);

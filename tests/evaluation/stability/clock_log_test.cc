@@ -223,6 +223,17 @@ TEST(ClockLog, ReadsTheOtherLogsOfChrony) {
   EXPECT_THAT(seconds(tracking), ElementsAre(1725359542.5, 1725359606.5));
 }
 
+TEST(ClockLog, AHeadingMayBeLongerThanItsRows) {
+  EXPECT_THAT(errors(parsed("time_s,offset_ns,port\n0,1\n1,2\n")), ElementsAre(1e-9, 2e-9));
+  EXPECT_THAT(problem("time_s,offset_ns,freq_ns\n0,1\n1,2\n", {.series = "freq_ns"}),
+              HasSubstr("--series: found 'freq_ns'"));
+}
+
+TEST(ClockLog, FrequenciesOfSeveralSeriesAreRefused) {
+  EXPECT_THAT(problem("time_s,y,host\n0,1e-9,a\n1,1e-9,a\n", {.frequencies = true}),
+              HasSubstr("allowed with --frequencies: one series"));
+}
+
 // One value that is damaged among small ones, whose unit is found by their size.
 TEST(ClockLog, AnErrorThatNoClockHasIsRefusedWhateverTheUnit) {
   const std::string text = "1e-7\n2e-7\n1e-7\n2e15\n1e-7\n";
