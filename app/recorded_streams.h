@@ -14,9 +14,9 @@
 namespace simbench::app {
 
 // `inputs`: one recording folder, whose first capture it is, or files as bags/recorded_files.h
-// reads them (folders of rosbag2 too) and IBL's (app/ibl_recording.h). The notes are for the user.
-// Throws scenarios::InputError (a folder among several inputs or without a capture),
-// RecordingFolderError, RecordedFileError.
+// reads them (folders of rosbag2 too), IBL's (app/ibl_recording.h), and folders of lists of stamps
+// (recording/dataset_folder.h). The notes are for the user. Throws scenarios::InputError (a folder
+// among several inputs or without a capture), RecordingFolderError, RecordedFileError.
 RecordedStreams recorded_streams(const std::vector<std::string>& inputs,
                                  const bags::FileOptions& options = {},
                                  const ReadProgress& progress = {});

@@ -125,9 +125,6 @@ class UnpackedBag {
 
  private:
   static constexpr std::size_t kBlock = std::size_t{256} << 10;
-  // As of a text that is compressed (recording/text_file.h).
-  static constexpr std::uint64_t kLeastPlain = std::uint64_t{64} << 20;
-  static constexpr std::uint64_t kPlainAByte = 128;
 
   // As far as the bytes are good, and as many as there may be.
   void copy(ByteStream& plain, const FileBytes& compressed) {
@@ -135,10 +132,10 @@ class UnpackedBag {
     try {
       while (copy_block(plain, file)) {
         report(compressed.position() / 2);
-        if (plain_size_ <= kLeastPlain + kPlainAByte * compressed_size_) continue;
+        if (plain_size_ <= most_inflated(compressed.position())) continue;
         lost_ = fmt::format(
             "{}: found more than {} times its bytes when inflated; the rest is left out", of_,
-            kPlainAByte);
+            kMostInflation);
         break;
       }
     } catch (const InflateError& error) {

@@ -56,14 +56,6 @@ class CommandLines {
   char line_[kLongestLine]{};
 };
 
-// The first cell of a line, which is taken off it.
-std::string_view take_cell(std::string_view& line) {
-  const std::size_t comma = line.find(',');
-  const std::string_view cell = line.substr(0, comma);
-  line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
-  return cell;
-}
-
 struct Track {
   std::vector<std::int64_t> stamps;  // in units of the time base
   std::int64_t unstamped = 0;

@@ -90,6 +90,13 @@ class MemoryBytes final : public ByteStream {
   std::string_view bytes_;
 };
 
+// How many bytes a file that is compressed as a whole, a text or a bag, may become, by how many of
+// its own were read: logs are 10 to 50 times as long.
+inline constexpr std::uint64_t kMostInflation = 128;
+constexpr std::uint64_t most_inflated(std::uint64_t compressed_bytes) {
+  return (std::uint64_t{64} << 20) + kMostInflation * compressed_bytes;
+}
+
 enum class Compression : std::uint8_t { kLz4, kZstd, kBzip2, kGzip };
 
 // The plain bytes of a compressed stream (of all but bzip2: of frames, one after another), which

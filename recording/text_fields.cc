@@ -106,6 +106,15 @@ void append_number(std::string& line, double value) {
   line.append(digits, end);
 }
 
+std::string_view take_cell(std::string_view& line) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t comma = std::min(line.find(','), line.size());
+  std::string_view cell = line.substr(0, comma);
+  line.remove_prefix(std::min(comma + 1, line.size()));
+  cell.remove_prefix(std::min(cell.find_first_not_of(kBlank), cell.size()));
+  return cell.substr(0, cell.find_last_not_of(kBlank) + 1);
+}
+
 void append_escaped(std::string& line, std::string_view text) {
   for (const char c : text) {
     switch (c) {

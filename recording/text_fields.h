@@ -1,4 +1,5 @@
-// The fields of a comma-separated line, strictly, and milliseconds as exact decimal numbers.
+// The fields of a comma-separated line, strictly as they were written or as other programs write
+// them, and milliseconds as exact decimal numbers.
 //
 //   std::string line = "poll";
 //   append_field(line, poll.camera);
@@ -7,6 +8,9 @@
 //   fields.next("kind");
 //   const auto camera = fields.whole<std::uint32_t>("camera");
 //   fields.end();
+//
+//   std::string_view theirs = "1000, 00.0396100, -0.0000025";
+//   const std::string_view count = take_cell(theirs);   // "1000"
 //
 //   parse_ms("12.3456789", 1000);   // 12'345'679 ns: digits beyond the sixth are rounded
 #pragma once
@@ -42,6 +46,10 @@ std::string printable_name(std::string_view name);
 std::string printable_lines(std::string_view text);
 // JSON text whose strings mean the same, with \uXXXX for those characters.
 std::string printable_json(std::string_view json);
+
+// The first cell of a line of commas, without the blanks around it; it is taken off the line. Empty
+// at the end of the line.
+std::string_view take_cell(std::string_view& line);
 
 template <std::integral Number>
 void append_number(std::string& line, Number value) {

@@ -20,9 +20,6 @@ namespace {
 constexpr std::size_t kTextBlock = std::size_t{64} << 10;
 constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
 constexpr std::uint32_t kReplacement = 0xfffd;
-// What a compressed file may become: logs are 10 to 50 times as long.
-constexpr std::uint64_t kLeastText = std::uint64_t{64} << 20;
-constexpr std::uint64_t kTextAByte = 128;
 
 std::optional<Compression> compression_of(std::string_view first_bytes) {
   switch (first_bytes.empty() ? '\0' : first_bytes.front()) {
@@ -190,9 +187,9 @@ class TextFile::Layers {
   std::size_t read(char* to, std::size_t most) {
     const std::size_t size = utf16_ ? utf16_->read(*plain_, to, most) : plain_->read(to, most);
     text_bytes_ += size;
-    if (inflated_ && text_bytes_ > kLeastText + kTextAByte * file_.position()) {
+    if (inflated_ && text_bytes_ > most_inflated(file_.position())) {
       throw FileError(fmt::format("it becomes more than {} times as long when inflated; unpack it",
-                                  kTextAByte));
+                                  kMostInflation));
     }
     return size;
   }

@@ -3,8 +3,7 @@
 // as PowerShell writes it. "-" is standard input.
 //
 // A compressed file may become 64 MiB and 128 bytes for each of its own. A file of another kind is
-// refused by what it is ("a Matroska video"). Half a surrogate pair
-// becomes U+FFFD.
+// refused by what it is ("a Matroska file"). Half a surrogate pair becomes U+FFFD.
 //
 // Errors: FileError, with the reason alone, at the beginning or where the file is damaged.
 // Complexity: linear; memory: two buffers of 64 kB, and what decompression looks back to

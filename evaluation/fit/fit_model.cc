@@ -287,7 +287,7 @@ Lines fit_evidence(const RigFit& fit, const FitInput& input) {
   return lines;
 }
 
-// Those with stamps of a clock that is set.
+// Cameras with stamps of a clock that is set.
 std::vector<std::string> cameras_from_1970(const FitInput& input) {
   std::vector<std::string> names;
   for (const FitStream& stream : input.streams) {

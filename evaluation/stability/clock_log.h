@@ -11,9 +11,8 @@
 //   clock minus the reference's time.
 // - others: w32tm /stripchart (also /rdtsc), positive: slow. Debug lines of systemd-timesyncd,
 //   positive: slow. The statistics of ptpd: offset from master, positive: fast.
-// - a TICC's time stamps of the pulses of a clock, once a second by each channel: a pulse that
-// comes
-//   early is of a clock that is ahead, from the first pulse on.
+// - a TICC's time stamps of the pulses of a clock, once a second by each channel: early pulses are
+//   of a clock that is ahead; errors count from the first pulse on.
 // - csv: tables (recording/table.h) of time and time error, see below.
 //
 // The format is that of most lines: what is no measurement (banners, changes of state, other

@@ -10,6 +10,7 @@
 #include "recording/counted.h"
 #include "recording/date_time.h"
 #include "recording/number_in.h"
+#include "recording/text_fields.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -151,16 +152,6 @@ class W32tmLines final : public LogLines {
   Microseconds days_{};
 };
 
-// The next cell of a line of commas, without blanks around it, which is taken off the line.
-std::string_view take_cell(std::string_view& line) {
-  const std::size_t comma = line.find(',');
-  std::string_view cell = line.substr(0, comma);
-  line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
-  while (cell.starts_with(' ')) cell.remove_prefix(1);
-  while (cell.ends_with(' ') || cell.ends_with('\r')) cell.remove_suffix(1);
-  return cell;
-}
-
 // "RdtscStart, RdtscEnd, FileTime, RoundtripDelay, NtpOffset": two counts of the processor, local
 // time in 100 ns since 1601, and seconds.
 class W32tmRdtscLines final : public LogLines {
@@ -170,8 +161,7 @@ class W32tmRdtscLines final : public LogLines {
     const auto file_time = number_in<std::int64_t>(take_cell(line));
     if (!file_time || *file_time < kYear1970) return std::nullopt;
     finite_of(take_cell(line), "RoundtripDelay", kLargestErrorS, place);
-    const double offset_s =
-        finite_of(line.empty() ? line : take_cell(line), "NtpOffset", kLargestErrorS, place);
+    const double offset_s = finite_of(take_cell(line), "NtpOffset", kLargestErrorS, place);
     return LogLine{.format = "w32tm",
                    .point = {Microseconds((*file_time - kYear1970) / 10), 0 - offset_s}};
   }

@@ -1,13 +1,26 @@
-// Names that a terminal shows and does not obey.
+// Names that a terminal shows and does not obey, and cells of a line.
 #include "recording/text_fields.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace simbench {
 namespace {
+
+TEST(TakeCell, TakesOneCellAfterTheOtherAndThenNothing) {
+  std::string_view line = " 17,, a b \t,last\r";
+  EXPECT_EQ(take_cell(line), "17");
+  EXPECT_EQ(take_cell(line), "");
+  EXPECT_EQ(take_cell(line), "a b");
+  EXPECT_EQ(take_cell(line), "last");
+  EXPECT_EQ(take_cell(line), "");
+  std::string_view blank = " \t";
+  EXPECT_EQ(take_cell(blank), "");
+  EXPECT_TRUE(blank.empty());
+}
 
 TEST(PrintableName, WhatControlsATerminalIsEscaped) {
   EXPECT_EQ(printable_name("a\x1b[2J\n\t\x7f"), "a\\x1b[2J\\x0a\\x09\\x7f");
