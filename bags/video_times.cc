@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "bags/bag.h"
@@ -90,7 +91,7 @@ class ProbedTracks {
     return true;
   }
   std::uint64_t position() const { return position_; }
-  std::map<int, Track>& tracks() { return tracks_; }
+  const std::map<int, Track>& tracks() const { return tracks_; }
 
  private:
   std::map<int, Track> tracks_;
@@ -112,14 +113,19 @@ std::string step_text(const StampUnit& unit) {
   return text.front() >= '0' && text.front() <= '9' ? text : "1 " + text;
 }
 
+// The title, or, where there is none or several tracks have it, with the track's number.
+std::string stream_name(const std::map<int, Track>& tracks, int number) {
+  const std::string& title = tracks.at(number).title;
+  const auto with_it = std::ranges::count_if(
+      tracks, [&title](const auto& track) { return track.second.title == title; });
+  if (!title.empty() && with_it == 1) return title;
+  return fmt::format("{} {}", title.empty() ? "video" : title, number);
+}
+
 RecordedStream stream_of(const Track& track, const std::string& path, const std::string& camera,
-                         int number) {
+                         std::string name) {
   RecordedStream stream{
-      .camera = camera,
-      .host = camera,
-      .stream = track.title.empty() ? fmt::format("video {}", number) : track.title,
-      .frames = {},
-      .counted = false};
+      .camera = camera, .host = camera, .stream = std::move(name), .frames = {}, .counted = false};
   std::vector<std::int64_t> stamps = track.stamps;
   std::ranges::sort(stamps);
   for (const std::int64_t stamp : stamps) {
@@ -177,7 +183,7 @@ RecordedStreams read_video(const std::string& path, const std::string& camera,
   }
   for (const auto& [number, track] : probed.tracks()) {
     if (track.stamps.empty() || !track.time_base) continue;
-    all.streams.push_back(stream_of(track, path, camera, number));
+    all.streams.push_back(stream_of(track, path, camera, stream_name(probed.tracks(), number)));
     const RecordedStream& stream = all.streams.back();
     const auto left_out = track.unstamped + static_cast<std::int64_t>(track.stamps.size()) -
                           static_cast<std::int64_t>(stream.frames.size());

@@ -50,13 +50,20 @@ Files tum_lists(const fs::path& folder) {
   return files;
 }
 
-Files csv_files(const fs::path& folder) {
+// ".csv" of "front.csv" and of "front.csv.gz".
+fs::path plain_extension(const fs::path& file) {
   constexpr std::array<std::string_view, 5> kCompressed = {".gz", ".zst", ".zstd", ".bz2", ".lz4"};
+  const bool packed = std::ranges::find(kCompressed, file.extension()) != kCompressed.end();
+  return packed ? file.stem().extension() : file.extension();
+}
+
+Files csv_files(const fs::path& folder) {
+  constexpr std::array<std::string_view, 3> kBags = {".bag", ".db3", ".mcap"};
   Files files;
   for (const fs::path& entry : entries_of(folder)) {
-    const bool packed = std::ranges::find(kCompressed, entry.extension()) != kCompressed.end();
-    const fs::path plain = packed ? entry.stem() : entry.filename();
-    if (plain.extension() == ".csv" && fs::is_regular_file(entry)) files.push_back(entry);
+    const fs::path extension = plain_extension(entry);
+    if (std::ranges::find(kBags, extension) != kBags.end()) return {};
+    if (extension == ".csv" && fs::is_regular_file(entry)) files.push_back(entry);
   }
   return files;
 }

@@ -6,8 +6,9 @@
 //   any other     its *.csv, plain or compressed (.gz, .zst, .bz2, .lz4)
 //
 // The first that is there counts; what else a folder holds (inertial data, ground truth) are no
-// frames of a camera. A recording or a result of simbench and a folder of
-// rosbag2 are none of these.
+// frames of a camera. A recording or a result of simbench, a folder of
+// rosbag2 and one with bags in it are none of these: what it holds besides is not left out in
+// silence.
 //
 //   for (const std::string& file : dataset_files("MH_01_easy")) ...   // by name, each a camera
 //

@@ -20,6 +20,10 @@ struct Magic {
   std::size_t at = 0;
 };
 
+// Behind the length of a box of MP4 and QuickTime, four bytes of which the first is 0 (a length
+// beyond 16 MB is written elsewhere): a text such as "cam_wide,..." is none.
+constexpr std::size_t kBoxType = 4;
+constexpr FileKind kQuickTime{.what = "a QuickTime file", .is_video = true};
 constexpr std::string_view kByPython =
     "simbench.write_recording() of the Python package makes a CSV of it";
 
@@ -35,12 +39,12 @@ constexpr auto kMagics = std::to_array<Magic>({
     {"\x93NUMPY", {.what = "a NumPy array", .help = kByPython}},
     {"PAR1", {.what = "a Parquet file", .help = kByPython}},
     {"XDF:", {.what = "an XDF file", .help = kByPython}},
-    {"\x1a\x45\xdf\xa3", {"a Matroska file", false, true}},
-    {"ftyp", {"an MP4 file", false, true}, 4},
-    {"moov", {"a QuickTime file", false, true}, 4},
-    {"mdat", {"a QuickTime file", false, true}, 4},
-    {"wide", {"a QuickTime file", false, true}, 4},
-    {"RIFF", {"an AVI or WAV file", false, true}},
+    {"\x1a\x45\xdf\xa3", {.what = "a Matroska file", .is_video = true}},
+    {"ftyp", {.what = "an MP4 file", .is_video = true}, kBoxType},
+    {"moov", kQuickTime, kBoxType},
+    {"mdat", kQuickTime, kBoxType},
+    {"wide", kQuickTime, kBoxType},
+    {"RIFF", {.what = "an AVI or WAV file", .is_video = true}},
     {"\x89HDF\r\n\x1a\n", {"an HDF5 file"}},
     {"PK\x03\x04",
      {.what = "a zip file",
@@ -74,9 +78,9 @@ constexpr std::array<Magic, 2> kTexts = {
 template <class Magics>
 std::optional<FileKind> kind_among(const Magics& magics, std::string_view first) {
   for (const Magic& magic : magics) {
-    if (first.size() > magic.at && first.substr(magic.at).starts_with(magic.bytes)) {
-      return magic.kind;
-    }
+    if (first.size() <= magic.at || !first.substr(magic.at).starts_with(magic.bytes)) continue;
+    if (magic.at == kBoxType && first.front() != '\0') continue;
+    return magic.kind;
   }
   return std::nullopt;
 }

@@ -5,7 +5,6 @@
 
 #include "evaluation/stability/log_lines.h"
 #include "recording/counted.h"
-#include "recording/number_in.h"
 
 namespace simbench::evaluation {
 namespace {

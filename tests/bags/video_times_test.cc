@@ -66,6 +66,17 @@ TEST_F(VideoTimesTest, FramesAreInOrderOfTheirStampsAndExactToTheNanosecond) {
   EXPECT_THAT(read.notes, ElementsAre(HasSubstr("video 1: 1 frame without a time stamp left out")));
 }
 
+TEST_F(VideoTimesTest, TracksOfOneTitleAreToldApart) {
+  ffprobe(
+      "echo packet,0,0,1; echo packet,1,0,2; echo packet,3,0,3\n"
+      "echo stream,0,1/30,Main; echo stream,1,1/30,Main; echo stream,3,1/30,IR\n");
+  std::vector<std::string> names;
+  for (const RecordedStream& stream : read_video(video_, "rig").streams) {
+    names.push_back(stream.stream);
+  }
+  EXPECT_THAT(names, ElementsAre("Main 0", "Main 1", "IR"));
+}
+
 TEST_F(VideoTimesTest, TheFileIsOneWordWhateverItsName) {
   ffprobe("for word; do :; done; test \"$word\" = \"file:" + video_ +
           "\" && echo packet,0,1,2; echo stream,0,1/30\n");
@@ -96,7 +107,9 @@ TEST_F(VideoTimesTest, ProgressMayEndTheReading) {
 TEST_F(VideoTimesTest, ItsFirstBytesTell) {
   EXPECT_TRUE(is_video(video_));
   EXPECT_TRUE(is_video(folder_.write("a.mp4", std::string("\0\0\0 ftypisom", 12))));
+  EXPECT_TRUE(is_video(folder_.write("a.mov", std::string("\0\0\0\x08wide\0\0", 10))));
   EXPECT_FALSE(is_video(folder_.write("a.csv", "time,offset\n")));
+  EXPECT_FALSE(is_video(folder_.write("cameras.csv", "cam_wide,cam_tele\n1,2\n")));
   EXPECT_FALSE(is_video(folder_.write("empty.mkv", "")));
 }
 

@@ -59,6 +59,10 @@ TEST_F(DatasetFolderTest, FoldersOfOtherKindsAreNone) {
     folder_.write(std::string(own) + ".d/" + own, "");
     EXPECT_THAT(files(std::string(own) + ".d"), IsEmpty()) << own;
   }
+  // Bags beside tables: neither is left out in silence.
+  folder_.write("mixed/frames.csv", "");
+  folder_.write("mixed/rig_0.mcap.zstd", "");
+  EXPECT_THAT(files("mixed"), IsEmpty());
   std::filesystem::create_directory(folder_ / "empty");
   EXPECT_THAT(files("empty"), IsEmpty());
   EXPECT_THAT(files("no_such"), IsEmpty());

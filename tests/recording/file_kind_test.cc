@@ -24,6 +24,7 @@ TEST(LastingKind, IsKnownByTheFirstBytes) {
   EXPECT_EQ(kind_of("\x93NUMPY\x01\x00"s), "a NumPy array");
   EXPECT_EQ(kind_of("\x1a\x45\xdf\xa3rest"), "a Matroska file");
   EXPECT_EQ(kind_of("\0\0\0\x18"s + "ftypmp42"), "an MP4 file");
+  EXPECT_EQ(kind_of("\0\0\0\x08"s + "wide"), "a QuickTime file");
   EXPECT_EQ(kind_of("\x89HDF\r\n\x1a\nrest"), "an HDF5 file");
   EXPECT_EQ(kind_of("PK\x03\x04rest"), "a zip file");
   EXPECT_EQ(kind_of("\x1f\x8b\x08rest"), "a gzip file");
@@ -39,7 +40,7 @@ TEST(LastingKind, IsKnownByTheFirstBytes) {
 TEST(LastingKind, WhatARunHasWrittenHasNone) {
   for (const char* const text :
        {"", "set,complete,camera", "<!doctype html>", "<?xml version=\"1.0\"?><svg/>", "{\"name\"",
-        "PK", "#ROSBAG V2", "Stream Typ"}) {
+        "PK", "#ROSBAG V2", "Stream Typ", "cam_wide,cam_tele"}) {
     EXPECT_EQ(kind_of(text), "none") << text;
   }
   EXPECT_EQ(kind_of("%PDF-1.5\n\0\0"s), "none");
