@@ -34,7 +34,7 @@ struct MetadataName {
   StampMember member;
 };
 // The SDK's names, then those that realsense-ros makes of them.
-constexpr std::array<MetadataName, 12> kMetadataNames = {{
+constexpr std::array<MetadataName, 16> kMetadataNames = {{
     {"Frame Counter", &RawFrame::counter},
     {"Sensor Timestamp", &RawFrame::sensor_us},
     {"Frame Timestamp", &RawFrame::frame_us},
@@ -47,6 +47,10 @@ constexpr std::array<MetadataName, 12> kMetadataNames = {{
     {"time_of_arrival", &RawFrame::arrival_ms},
     {"backend_timestamp", &RawFrame::backend_ms},
     {"Arrival Timestamp", &RawFrame::arrival_ms},
+    {"Actual Exposure", &RawFrame::exposure_us},
+    {"actual_exposure", &RawFrame::exposure_us},
+    {"Raw Frame Size", &RawFrame::bytes},
+    {"raw_frame_size", &RawFrame::bytes},
 }};
 
 // A product that cannot overflow; nothing for a stamp that is not there or beyond all time.
@@ -123,6 +127,18 @@ bool are_counted(const std::vector<RawFrame>& frames) {
          });
 }
 
+// What the metadata say beside stamps.
+void add_columns(const RawFrame& frame, RecordedStream& stream) {
+  const auto set = [&stream](std::vector<double>& column, std::int64_t value) {
+    if (value != kNoStamp) stream.set(column, static_cast<double>(value));
+  };
+  set(stream.columns.exposure_us, frame.exposure_us);
+  set(stream.columns.bytes, frame.bytes);
+  if (frame.backend_ms == kNoStamp) return;
+  stream.set(stream.columns.backend_ms,
+             static_cast<double>(frame.backend_ms) - to_ms(stream.frames.back().arrival));
+}
+
 std::string stamp_text(const StampField& source, bool of_host) {
   if (source.member != &RawFrame::header_ns) return source.name;
   return fmt::format("header stamp ({})", of_host ? "a computer's clock" : "camera's clock");
@@ -170,13 +186,18 @@ bool make_stream(const FrameTrack& track, const std::string& place, RecordedStre
                                                  : std::uint64_t{stream.frames.size()};
     stream.frames.push_back({counter, Nanoseconds(*sensor), Nanoseconds(*arrival)});
     stream.origin.messages.push_back(frame.message);
+    add_columns(frame, stream);
   }
+  stream.complete_columns();
   if (const std::size_t lacking = track.frames.size() - stream.frames.size(); lacking > 0) {
     notes.push_back(fmt::format("{}: {}: {} left out, which have no {}", place, topic,
                                 counted(lacking, "frame"), stamps->name));
   }
   if (stream.frames.empty()) return false;
   stream.stamped_by_host = is_of_host(track, *stamps, stream.frames.front().sensor.count());
+  const bool has_metadata =
+      std::ranges::any_of(track.frames, [](const RawFrame& f) { return f.arrival_ms != kNoStamp; });
+  stream.realsense = is_sdk(track) || has_metadata;
   stream.origin.file = place;
   stream.origin.topic = track.topic_name;
   stream.origin.stamps = stamp_text(*stamps, stream.stamped_by_host);

@@ -27,6 +27,8 @@ struct RawFrame {
   std::int64_t frame_us = kNoStamp;   // FRAME_TIMESTAMP
   std::int64_t arrival_ms = kNoStamp;
   std::int64_t backend_ms = kNoStamp;
+  std::int64_t exposure_us = kNoStamp;
+  std::int64_t bytes = kNoStamp;
 
   // A value of the frame's metadata, by the name that the SDK or realsense-ros gives it; unknown
   // names are ignored.

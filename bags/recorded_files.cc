@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -33,14 +34,31 @@ void sort_by_arrival(RecordedStream& stream) {
   std::vector<std::size_t> order(stream.frames.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return stream.frames[i].arrival; });
-  std::vector<StampedFrame> frames;
-  std::vector<std::uint64_t> messages;
-  for (const std::size_t i : order) {
-    frames.push_back(stream.frames[i]);
-    messages.push_back(stream.origin.messages[i]);
-  }
-  stream.frames = std::move(frames);
-  stream.origin.messages = std::move(messages);
+  const auto sort = [&order](auto& values) {
+    auto sorted = values;
+    for (std::size_t i = 0; i < values.size(); ++i) sorted[i] = values[order[i]];
+    values = std::move(sorted);
+  };
+  sort(stream.frames);
+  sort(stream.origin.messages);
+  stream.columns.for_each(sort);
+}
+
+// Beside the frames, after these were joined.
+void append_columns(RecordedStream& stream, const RecordedStream& next) {
+  const std::size_t before = stream.frames.size() - next.frames.size();
+  std::vector<std::vector<double>> added;
+  FrameColumns columns = next.columns;
+  columns.for_each([&added](std::vector<double>& column) { added.push_back(std::move(column)); });
+  auto more = added.begin();
+  stream.columns.for_each([&](std::vector<double>& column) {
+    if (!column.empty() || !more->empty()) {
+      column.resize(before, std::numeric_limits<double>::quiet_NaN());
+      column.insert(column.end(), more->begin(), more->end());
+    }
+    ++more;
+  });
+  stream.complete_columns();
 }
 
 void append(RecordedStream& stream, const RecordedStream& next, std::uint64_t messages_before) {
@@ -49,6 +67,7 @@ void append(RecordedStream& stream, const RecordedStream& next, std::uint64_t me
     stream.origin.messages.push_back(message == kNoMessage ? message : messages_before + message);
   }
   stream.frames.insert(stream.frames.end(), next.frames.begin(), next.frames.end());
+  append_columns(stream, next);
   if (!goes_on) sort_by_arrival(stream);
   stream.counted = stream.counted && next.counted;
   if (stream.counted) return;

@@ -13,7 +13,8 @@ void add_input_options(Command& command, InputOptions& options) {
                "Of bags only these topics. Default: those that look like a camera's");
   command.text("--columns", "FIELD=COLUMN,...", options.columns,
                "Of CSV files: which columns are sensor, arrival, counter, stream, index, camera,\n"
-               "host. After a column's name may stand :ns, :us, :ms (the default) or :s");
+               "host, exposure, backend, bytes, temperature. After a column's name may stand\n"
+               ":ns, :us, :ms (the default) or :s");
 }
 
 bags::FileOptions file_options(const InputOptions& options) {

@@ -18,7 +18,8 @@ RecordedStream& RecordedStreamSink::stream_of(const FrameRecord& frame) {
     streams_.push_back({.camera = name_of(description_.cameras, frame.camera, "camera"),
                         .host = name_of(description_.hosts, host, "host"),
                         .stream = std::string(scenarios::to_text(frame.stream)),
-                        .frames = {}});
+                        .frames = {},
+                        .realsense = true});
   }
   return streams_[place->second];
 }
@@ -26,9 +27,14 @@ RecordedStream& RecordedStreamSink::stream_of(const FrameRecord& frame) {
 void RecordedStreamSink::on_frames(std::span<const FrameRecord> frames,
                                    std::span<const FrameTruth> /*truths*/) {
   for (const FrameRecord& frame : frames) {
-    stream_of(frame).frames.push_back({.counter = frame.counter,
-                                       .sensor = Nanoseconds(std::int64_t{frame.sensor.us} * 1000),
-                                       .arrival = frame.arrival_steady.time_since_epoch()});
+    RecordedStream& stream = stream_of(frame);
+    stream.frames.push_back({.counter = frame.counter,
+                             .sensor = Nanoseconds(std::int64_t{frame.sensor.us} * 1000),
+                             .arrival = frame.arrival_steady.time_since_epoch()});
+    stream.set(stream.columns.exposure_us, frame.exposure_us);
+    if (frame.backend != HostTime{}) {
+      stream.set(stream.columns.backend_ms, to_ms(frame.backend - frame.arrival));
+    }
   }
 }
 

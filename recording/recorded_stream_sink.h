@@ -9,7 +9,7 @@
 //   folder.play(capture, sink);
 //   const evaluation::Diagnosis diagnosis = evaluation::diagnose(sink.take(), {});
 //
-// Memory: 24 bytes a frame.
+// Memory: 40 bytes a frame.
 #pragma once
 
 #include <cstddef>

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -32,6 +33,21 @@ struct StreamOrigin {
   std::vector<std::uint64_t> messages{};  // a number a frame, of the topic's messages
 };
 
+// What a recording says of each frame beside its stamps: a column is empty, or has a value a frame,
+// NaN where it is unknown.
+struct FrameColumns {
+  std::vector<double> exposure_us{};
+  std::vector<double> backend_ms{};  // when the host's driver had it, before its arrival: negative
+  std::vector<double> bytes{};       // of the image as it was sent
+  std::vector<double> temperature_c{};
+
+  // f(column) for each.
+  template <class Column>
+  void for_each(const Column& f) {
+    for (auto* column : {&exposure_us, &backend_ms, &bytes, &temperature_c}) f(*column);
+  }
+};
+
 // One stream of one camera, frames in order of delivery.
 struct RecordedStream {
   std::string camera;
@@ -43,7 +59,22 @@ struct RecordedStream {
   bool counted = true;
   // A computer stamped the frames (a message's header), not the camera.
   bool stamped_by_host = false;
+  // librealsense recorded it: its words and options apply.
+  bool realsense = false;
   StreamOrigin origin{};
+  FrameColumns columns{};
+
+  // Sets a column's value of the last frame; earlier frames without one are NaN.
+  void set(std::vector<double>& column, double value) const {
+    column.resize(frames.size(), std::numeric_limits<double>::quiet_NaN());
+    column.back() = value;
+  }
+  // After the last frame.
+  void complete_columns() {
+    columns.for_each([this](std::vector<double>& column) {
+      if (!column.empty()) column.resize(frames.size(), std::numeric_limits<double>::quiet_NaN());
+    });
+  }
 };
 
 // No rig has more; a file that names more is refused, or read up to there with a note.

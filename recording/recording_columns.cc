@@ -16,7 +16,8 @@ namespace simbench {
 namespace {
 
 constexpr std::array<std::string_view, kCsvFields> kFieldNames = {
-    "stream", "index", "counter", "sensor", "arrival", "camera", "host"};
+    "stream", "index",    "counter", "sensor", "arrival",    "camera",
+    "host",   "exposure", "backend", "bytes",  "temperature"};
 
 [[noreturn]] void fail_in_table(const TableReader& table, const std::string& problem) {
   throw CsvError(fmt::format("{}:1: {}", table.path(), problem));
@@ -147,10 +148,12 @@ std::string plain_column_name(std::string_view cell) {
 
 RecordingColumns RecordingColumns::parse(const std::string& text) {
   const auto fail = [](std::string_view found) {
-    throw CsvError("--columns: found " + quoted_bytes(found) +
-                   ", allowed: FIELD=COLUMN or FIELD=COLUMN:UNIT with commas between them; fields "
-                   "stream, index, counter, sensor, arrival, camera, host; units " +
-                   kUnitsText);
+    throw CsvError(
+        "--columns: found " + quoted_bytes(found) +
+        ", allowed: FIELD=COLUMN or FIELD=COLUMN:UNIT with commas between them; fields "
+        "stream, index, counter, sensor, arrival, camera, host, exposure, backend, bytes, "
+        "temperature; units " +
+        kUnitsText);
   };
   RecordingColumns parsed;
   const std::string_view all = text;
@@ -206,7 +209,30 @@ ResolvedColumns resolve(const RecordingColumns& columns, const TableReader& tabl
     found.arrival =
         stamps_of(arrival.name, arrival.unit, wanted_position(arrival.name, table), table, notes);
   }
+  found.exposure_unit = columns.of(CsvField::kExposure).unit;
+  const RecordingColumns::Column& backend = columns.of(CsvField::kBackend);
+  if (!backend.name.empty()) {
+    found.backend =
+        stamps_of(backend.name, backend.unit, wanted_position(backend.name, table), table, notes);
+  }
+  find_frame_columns(table.heading(), found);
   return found;
+}
+
+void find_frame_columns(const std::vector<std::string>& heading, ResolvedColumns& found) {
+  const auto find = [&](CsvField field, std::initializer_list<std::string_view> names) {
+    std::optional<std::size_t>& position = found.position[static_cast<std::size_t>(field)];
+    for (std::size_t i = 0; i < heading.size() && !position; ++i) {
+      if (!is_called(heading[i], names)) continue;
+      position = i;
+      if (field == CsvField::kExposure) found.exposure_unit = heading_unit(heading[i]);
+    }
+  };
+  find(CsvField::kExposure, {"exposure", "exposure_us", "exposure_ms", "exposure_ns", "exposure_s",
+                             "exposure(us)", "exposure(ms)", "exposure_time", "exposuretime",
+                             "exposure_time_us", "actual_exposure", "actualexposure"});
+  find(CsvField::kBytes, {"bytes", "frame_bytes", "size_bytes", "frame_size", "payload_bytes"});
+  find(CsvField::kTemperature, {"temperature", "temperature_c", "temp_c", "asic_temperature"});
 }
 
 ResolvedColumns found_columns(const TableReader& table, std::vector<std::string>& notes) {
@@ -241,6 +267,7 @@ ResolvedColumns found_columns(const TableReader& table, std::vector<std::string>
   ResolvedColumns found;
   found.sensors.push_back(stamps_of(label, std::nullopt, stamps.front(), table, notes));
   found.position[static_cast<std::size_t>(CsvField::kCounter)] = counter;
+  find_frame_columns(table.heading(), found);
   notes.push_back(
       fmt::format("column {} is taken for the stamps of the frames, and for their "
                   "arrivals: there is one clock only",

@@ -4,7 +4,8 @@
 // The unit of a column of stamps is the one behind its name, else that of its heading; ISO 8601
 // needs none. Else it is found by size (stamps that count from 1970) or by rate (the only unit in
 // which frames come 1 to 1000 times a second), and said in a note; where none fits, it must be
-// stated.
+// stated. What a table has beside stamps (exposure, stamp of the back end, bytes, temperature) is
+// found by its heading; an exposure is in microseconds where nothing says another unit.
 //
 //   const auto columns = RecordingColumns::parse("sensor=t_cam:us,arrival=t_host:ns,counter=seq");
 //   std::vector<std::string> notes;
@@ -33,8 +34,20 @@ class CsvError : public RecordedFileError {
   using RecordedFileError::RecordedFileError;
 };
 
-enum class CsvField : std::uint8_t { kStream, kIndex, kCounter, kSensor, kArrival, kCamera, kHost };
-inline constexpr std::size_t kCsvFields = 7;
+enum class CsvField : std::uint8_t {
+  kStream,
+  kIndex,
+  kCounter,
+  kSensor,
+  kArrival,
+  kCamera,
+  kHost,
+  kExposure,
+  kBackend,
+  kBytes,
+  kTemperature
+};
+inline constexpr std::size_t kCsvFields = 11;
 
 struct RecordingColumns {
   struct Column {
@@ -47,8 +60,8 @@ struct RecordingColumns {
   std::vector<Column> cameras{};
 
   // From "sensor=t_cam:us,arrival=t_host:ns,counter=seq": of stream, index, counter, sensor,
-  // arrival, camera and host. Several sensor= are a camera each. Throws CsvError: "--columns: ...",
-  // also if the sensor's is missing.
+  // arrival, camera, host, exposure, backend, bytes and temperature. Several sensor= are a camera
+  // each. Throws CsvError: "--columns: ...", also if the sensor's is missing.
   static RecordingColumns parse(const std::string& text);
   const Column& of(CsvField field) const { return columns[static_cast<std::size_t>(field)]; }
 };
@@ -63,6 +76,8 @@ struct ResolvedColumns {
   std::array<std::optional<std::size_t>, kCsvFields> position{};
   std::vector<Stamps> sensors{};  // at least one
   std::optional<Stamps> arrival{};
+  std::optional<StampUnit> exposure_unit{};  // nothing: microseconds
+  std::optional<Stamps> backend{};
 };
 
 // Notes say what was taken for granted, without the file's name.
@@ -71,6 +86,9 @@ ResolvedColumns resolve(const RecordingColumns& columns, const TableReader& tabl
 // For a table about which nothing is said: its only column of times, and a counter if one is called
 // so. Throws CsvError, with what would be read.
 ResolvedColumns found_columns(const TableReader& table, std::vector<std::string>& notes);
+
+// Adds the columns beside stamps that nobody stated, by their headings.
+void find_frame_columns(const std::vector<std::string>& heading, ResolvedColumns& found);
 
 // The plain name: blanks, capitals and a mark of comments differ between versions of a tool.
 std::string plain_column_name(std::string_view cell);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -25,7 +26,8 @@ constexpr std::size_t kHeaderBytes = std::size_t{1} << 20;
 
 // What rs-data-collect calls its columns, by field; the last two are optional.
 constexpr std::array<std::string_view, kCsvFields> kUsualNames = {
-    "streamtype", "index", "f#", "hwtimestamp(ms)", "hosttimestamp(ms)", "camera", "host"};
+    "streamtype", "index",       "f#",      "hwtimestamp(ms)", "hosttimestamp(ms)", "camera",
+    "host",       "exposure_us", "backend", "bytes",           "temperature_c"};
 constexpr std::size_t kUsualFields = 5;
 
 using Positions = std::array<std::optional<std::size_t>, kCsvFields>;
@@ -142,6 +144,11 @@ class CsvRecordingReader::File {
   bool has(CsvField field) const {
     return columns_.position[static_cast<std::size_t>(field)].has_value();
   }
+  void add_columns(const Cells& cells, RecordedStream& stream) const;
+  // NaN for a cell that is no number.
+  double number_of(const Cells& cells, CsvField field) const {
+    return number_in<double>(cell(cells, field)).value_or(std::numeric_limits<double>::quiet_NaN());
+  }
   std::string_view cell(const Cells& cells, CsvField field) const {
     return cells[*columns_.position[static_cast<std::size_t>(field)]];
   }
@@ -161,6 +168,7 @@ class CsvRecordingReader::File {
   ResolvedColumns columns_{};
   std::size_t width_ = 0;  // cells of a row
   bool preamble_ = false;
+  bool usual_ = false;  // in the form of rs-data-collect, which counts frames
   bool any_frame_ = false;
   std::uint64_t missing_ = 0;
   std::size_t first_missing_ = 0;  // its line
@@ -175,6 +183,7 @@ void CsvRecordingReader::File::read(LineReader lines) {
     usual = is_usual(lines);
     lines.rewind();
   }
+  usual_ = usual;
   if (usual) {
     read_usual(lines);
   } else {
@@ -306,7 +315,27 @@ void CsvRecordingReader::File::add_frame(const Cells& cells, std::string_view ca
                       ? stamp_of(cells[columns_.arrival->position], *columns_.arrival, place_)
                       : frame.sensor;
   stream.frames.push_back(frame);
+  add_columns(cells, stream);
   any_frame_ = true;
+}
+
+void CsvRecordingReader::File::add_columns(const Cells& cells, RecordedStream& stream) const {
+  FrameColumns& columns = stream.columns;
+  if (has(CsvField::kExposure)) {
+    constexpr double kMicroseconds = 1e6;
+    const double scale =
+        columns_.exposure_unit ? columns_.exposure_unit->seconds() * kMicroseconds : 1;
+    stream.set(columns.exposure_us, number_of(cells, CsvField::kExposure) * scale);
+  }
+  if (has(CsvField::kBytes)) stream.set(columns.bytes, number_of(cells, CsvField::kBytes));
+  if (has(CsvField::kTemperature)) {
+    stream.set(columns.temperature_c, number_of(cells, CsvField::kTemperature));
+  }
+  if (columns_.backend && !is_missing_cell(cells[columns_.backend->position])) {
+    const Nanoseconds backend =
+        stamp_of(cells[columns_.backend->position], *columns_.backend, place_);
+    stream.set(columns.backend_ms, to_ms(backend - stream.frames.back().arrival));
+  }
 }
 
 void CsvRecordingReader::File::end(bool torn, bool empty) {
@@ -342,6 +371,7 @@ RecordedStream& CsvRecordingReader::File::stream_of(std::string_view camera, std
         {printable_name(camera), printable_name(naming.host), printable_name(name), {}});
     RecordedStream& added = reader_.streams_.back();
     added.counted = has(CsvField::kCounter);
+    added.realsense = usual_ && has(CsvField::kCounter);
     added.origin.file = place_.path;
   }
   check_naming(*known->second.camera, camera, host);
@@ -393,6 +423,7 @@ void CsvRecordingReader::read_text(std::string_view text, const std::string& pat
 std::vector<RecordedStream> CsvRecordingReader::take() {
   index_.clear();
   cameras_.clear();
+  for (RecordedStream& stream : streams_) stream.complete_columns();
   return std::exchange(streams_, {});
 }
 

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -6,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
+#include "cli/messages.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/page/diagnose_page.h"
 #include "reports/recordings/diagnose_report.h"
@@ -31,6 +33,7 @@ Examples:
   simbench diagnose results/monday                     a folder of `simbench record`
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
   simbench diagnose rig.csv --html rig.html            the same as a page
+  simbench diagnose *.bag --clock-log hostA=ptp4l.log --clock-log hostB=tracking.log
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
 Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input, 130 interrupted.)";
@@ -41,17 +44,37 @@ struct DiagnoseArguments {
   std::string format;
   std::optional<double> rate_hz;
   bool one_host = false;
+  std::vector<std::string> clock_logs;
   std::string html;
   std::vector<std::string> command;
 };
+
+// "HOST=FILE", or a file alone; every series of it.
+std::vector<evaluation::HostLog> host_logs(const std::vector<std::string>& given) {
+  std::vector<evaluation::HostLog> logs;
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    const bool has_host = equals != std::string::npos && !std::filesystem::exists(text);
+    const std::string file = has_host ? text.substr(equals + 1) : text;
+    const std::string host = has_host ? text.substr(0, equals) : "";
+    for (const evaluation::ClockLogSeries& series : evaluation::clock_log_series(file)) {
+      logs.push_back(
+          {.host = host, .log = evaluation::read_clock_log(file, {.series = series.name})});
+      for (const std::string& note : logs.back().log.notes) print_note(note);
+    }
+  }
+  return logs;
+}
 
 int run_diagnose(const DiagnoseArguments& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
   const auto rig = read_inputs(options.files, options.inputs);
   if (!rig) return kInterrupted;
-  const evaluation::Diagnosis diagnosis = evaluation::diagnose(
-      rig->streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});
+  const evaluation::Diagnosis diagnosis =
+      evaluation::diagnose(rig->streams, {.rate_hz = options.rate_hz,
+                                          .one_host = options.one_host,
+                                          .clock_logs = host_logs(options.clock_logs)});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
                                         : plain(reports::diagnose_document(diagnosis)));
   if (page) {
@@ -76,6 +99,10 @@ void add_diagnose_command(CommandLine& line) {
   add_input_options(command, options->inputs);
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
+  command.texts(
+      "--clock-log", "[HOST=]FILE", options->clock_logs,
+      "A log of a host's clock, of any form that `simbench stability` reads; may be given\n"
+      "several times. What of the cameras' spread the clocks are, and what not");
   command.output("--html", "FILE.html", options->html,
                  "Write a page, too: the answer, how each camera's phase moves, the tables. It\n"
                  "is one file, which opens offline");

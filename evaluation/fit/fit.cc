@@ -8,94 +8,79 @@
 #include <numeric>
 #include <span>
 
+#include "evaluation/fit/fit_remarks.h"
+#include "evaluation/fit/rate_line.h"
 #include "evaluation/frames/camera_statistics.h"
-#include "laws/lower_hull.h"
 #include "recording/counted.h"
 
 namespace simbench::evaluation {
 namespace {
 
-constexpr std::size_t kParts = 8;
+constexpr double kNotDelayed = 0.25;  // the lower quartile
 
-void check_stamps(const std::string& camera, const FitStream& stream) {
-  const std::vector<StampedFrame>& frames = stream.frames;
-  if (frames.size() < kFewestFrames) {
-    throw FitError(fmt::format("camera {}, {}: found {}, a fit needs {} at least", camera,
-                               stream.kind, counted(frames.size(), "frame"), kFewestFrames));
-  }
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    const bool device_back = frames[i].sensor <= frames[i - 1].sensor;
-    if (!device_back && frames[i].arrival >= frames[i - 1].arrival) continue;
-    const char* what = device_back ? "device stamp" : "arrival";
-    const auto step_ms = device_back ? to_ms(frames[i].sensor - frames[i - 1].sensor)
-                                     : to_ms(frames[i].arrival - frames[i - 1].arrival);
-    throw FitError(fmt::format(
-        "camera {}, {}: found {} {:.3f} ms after the one before it (frame counter {}), allowed "
-        "stamps that ascend; cut the recording there",
-        camera, stream.kind, what, step_ms, frames[i].counter));
-  }
-}
+// The points (device stamp, arrival less device stamp), both from the first frame on.
+struct StampPoints {
+  std::vector<double> device_ms;
+  std::vector<double> distance_ms;
 
-// (device stamp, arrival less device stamp), both from the first frame on.
-std::vector<LinePoint> points_of(const std::vector<StampedFrame>& frames) {
-  std::vector<LinePoint> points;
-  points.reserve(frames.size());
+  std::span<const double> device(std::size_t begin, std::size_t end) const {
+    return std::span(device_ms).subspan(begin, end - begin);
+  }
+  std::span<const double> distance(std::size_t begin, std::size_t end) const {
+    return std::span(distance_ms).subspan(begin, end - begin);
+  }
+};
+
+StampPoints stamp_points(const std::vector<StampedFrame>& frames) {
+  StampPoints points;
   for (const StampedFrame& frame : frames) {
     const std::int64_t device_ns = (frame.sensor - frames.front().sensor).count();
     const std::int64_t arrival_ns = (frame.arrival - frames.front().arrival).count();
-    points.push_back({.x = device_ns, .y = arrival_ns - device_ns});
+    points.device_ms.push_back(difference_ms(device_ns, 0));
+    points.distance_ms.push_back(difference_ms(arrival_ns, device_ns));
   }
   return points;
 }
 
-// The hull line of every `step`-th point from `first` on.
-SupportLine hull_line(std::span<const LinePoint> points, std::size_t first = 0,
-                      std::size_t step = 1) {
-  LowerHull hull;
-  for (std::size_t i = first; i < points.size(); i += step) hull.add(points[i]);
-  return middle_line(hull.vertices());
-}
-
-double skew_error_ppm(std::span<const LinePoint> points) {
-  std::vector<double> skews;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    skews.push_back(skew_of_slope_ppm(hull_line(points, part, kParts).slope));
+// The heights of the frames [begin, end) over a line.
+std::vector<double> heights_ms(const StampPoints& points, const RateLine& line, std::size_t begin,
+                               std::size_t end) {
+  std::vector<double> heights;
+  heights.reserve(end - begin);
+  for (std::size_t i = begin; i < end; ++i) {
+    heights.push_back(points.distance_ms[i] - line.at(points.device_ms[i]));
   }
-  return standard_deviation(skews) / std::sqrt(static_cast<double>(kParts));
+  return heights;
 }
 
-double height_ms(const SupportLine& line, LinePoint point) {
-  return (static_cast<double>(point.y) - line.at(point.x)) * 1e-6;
-}
-
-double rise_ms(std::span<const LinePoint> points, const SupportLine& line) {
+double rise_ms(const StampPoints& points, const RateLine& line) {
   constexpr std::size_t kTenths = 10;
+  const std::size_t size = points.device_ms.size();
+  const double usual = quantile(heights_ms(points, line, 0, size), kNotDelayed);
   double worst = 0;
   for (std::size_t i = 0; i < kTenths; ++i) {
-    const std::size_t begin = i * points.size() / kTenths;
-    const std::size_t end = (i + 1) * points.size() / kTenths;
-    double least = height_ms(line, points[begin]);
-    for (const LinePoint& point : points.subspan(begin, end - begin)) {
-      least = std::min(least, height_ms(line, point));
-    }
-    worst = std::max(worst, least);
+    std::vector<double> heights =
+        heights_ms(points, line, i * size / kTenths, (i + 1) * size / kTenths);
+    worst = std::max(worst, std::abs(quantile(std::move(heights), kNotDelayed) - usual));
   }
   return worst;
 }
 
-// The height of each frame above the hull of its block.
-std::vector<double> excess_of(std::span<const LinePoint> points, double span_s) {
-  const std::size_t by_frames = points.size() / kBlockFrames;
+// The height of each frame over the line of its block, from the lowest on.
+std::vector<double> excess_of(const StampPoints& points, double span_s) {
+  const std::size_t size = points.device_ms.size();
+  const std::size_t by_frames = size / kBlockFrames;
   const auto by_time = static_cast<std::size_t>(span_s / kBlockS);
   const std::size_t blocks = std::max<std::size_t>(1, std::min(by_frames, by_time));
   std::vector<double> excess_ms;
-  excess_ms.reserve(points.size());
+  excess_ms.reserve(size);
   for (std::size_t i = 0; i < blocks; ++i) {
-    const std::size_t begin = i * points.size() / blocks;
-    const std::size_t end = (i + 1) * points.size() / blocks;
-    const std::span<const LinePoint> block = points.subspan(begin, end - begin);
-    const SupportLine line = hull_line(block);
-    for (const LinePoint& point : block) excess_ms.push_back(std::max(0.0, height_ms(line, point)));
+    const std::size_t begin = i * size / blocks;
+    const std::size_t end = (i + 1) * size / blocks;
+    const RateLine line = rate_line(points.device(begin, end), points.distance(begin, end));
+    const std::vector<double> heights = heights_ms(points, line, begin, end);
+    const double lowest = *std::min_element(heights.begin(), heights.end());
+    for (const double height : heights) excess_ms.push_back(height - lowest);
   }
   return excess_ms;
 }
@@ -116,60 +101,140 @@ std::vector<double> ranks_of(const std::vector<double>& values) {
   return ranks;
 }
 
-// Pearson's.
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const double mean_a = mean_of(a);
-  const double mean_b = mean_of(b);
-  double aa = 0;
-  double bb = 0;
-  double ab = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
+// Values less their mean, over their standard deviation; nothing if all are the same.
+std::vector<double> standardised(std::vector<double> values) {
+  const double mean = mean_of(values);
+  double squares = 0;
+  for (double& value : values) {
+    value -= mean;
+    squares += value * value;
   }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNan;
+  if (!(squares > 0)) return {};
+  const double deviation = std::sqrt(squares / static_cast<double>(values.size()));
+  for (double& value : values) value /= deviation;
+  return values;
+}
+
+// Pearson's. The error is that of the sums of the influences of the pairs, over successive parts.
+FittedValue correlation(std::vector<double> before, std::vector<double> after) {
+  const std::vector<double> a = standardised(std::move(before));
+  const std::vector<double> b = standardised(std::move(after));
+  if (a.empty() || b.empty()) return {.value = kNan, .error = kNan};
+  const auto size = static_cast<double>(a.size());
+  double r = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) r += a[i] * b[i] / size;
+  double squares = 0;
+  for (std::size_t part = 0; part < kErrorBlocks; ++part) {
+    double influence = 0;
+    for (std::size_t i = part * a.size() / kErrorBlocks; i < (part + 1) * a.size() / kErrorBlocks;
+         ++i) {
+      influence += a[i] * b[i] - r * (a[i] * a[i] + b[i] * b[i]) / 2;
+    }
+    squares += influence * influence;
+  }
+  constexpr auto kBlocks = static_cast<double>(kErrorBlocks);
+  return {.value = r,
+          .error = std::sqrt(squares * kBlocks / (kBlocks - 1)) / size,
+          .freedom = kBlocks - 1};
 }
 
 constexpr std::int64_t kFewestFramePairs = 30;
+constexpr std::size_t kFewestScattered = 4;
 
-// The mean of the streams' correlations, weighted by their pairs.
+// Values with weights: their mean, with the larger of two errors: the one that their own errors
+// make (its degrees of freedom are Welch's and Satterthwaite's), and that of the scatter of enough.
+FittedValue weighted_mean(const std::vector<FittedValue>& values,
+                          const std::vector<double>& weights) {
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+  double mean = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) mean += weights[i] / all * values[i].value;
+  double own = 0;
+  double own_squares = 0;
+  double scatter = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double share = std::pow(weights[i] / all * values[i].error, 2);
+    own += share;
+    own_squares += share * share / values[i].freedom;
+    scatter += std::pow(weights[i] / all * (values[i].value - mean), 2);
+  }
+  const auto size = static_cast<double>(values.size());
+  if (size > 1) scatter *= size / (size - 1);
+  if (values.size() >= kFewestScattered && scatter > own)
+    return {mean, std::sqrt(scatter), size - 1};
+  return {mean, std::sqrt(own), own > 0 ? own * own / own_squares : kErrorBlocks - 1};
+}
+
+// The mean of the streams' correlations, weighted by their pairs, as that of a Gaussian copula.
 std::optional<FittedValue> correlation_of(const std::vector<StreamFit>& streams) {
-  double sum = 0;
+  std::vector<FittedValue> found;
+  std::vector<double> weights;
   std::int64_t pairs = 0;
   for (const StreamFit& stream : streams) {
-    if (std::isnan(stream.rank_correlation)) continue;
-    sum += stream.rank_correlation * static_cast<double>(stream.pairs);
+    if (std::isnan(stream.rank_correlation.value)) continue;
+    found.push_back(stream.rank_correlation);
+    weights.push_back(static_cast<double>(stream.pairs));
     pairs += stream.pairs;
   }
   if (pairs < kFewestFramePairs) return std::nullopt;
-  const double spearman = sum / static_cast<double>(pairs);
-  const double per_rank = std::numbers::pi / 3 * std::cos(std::numbers::pi / 6 * spearman);
-  return FittedValue{2 * std::sin(std::numbers::pi / 6 * spearman),
-                     per_rank / std::sqrt(static_cast<double>(pairs))};
+  const FittedValue spearman = weighted_mean(found, weights);
+  const double per_rank = std::numbers::pi / 3 * std::cos(std::numbers::pi / 6 * spearman.value);
+  return FittedValue{2 * std::sin(std::numbers::pi / 6 * spearman.value), per_rank * spearman.error,
+                     spearman.freedom};
 }
 
-std::vector<FittedValue> skews_of(const FitInput& input, const std::vector<StreamFit>& streams) {
-  std::vector<FittedValue> skews;
-  for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
-    const StreamFit* best = nullptr;
-    for (const StreamFit& stream : streams) {
-      if (stream.camera != camera) continue;
-      if (best == nullptr || stream.skew_error_ppm < best->skew_error_ppm) best = &stream;
-    }
-    if (best == nullptr) {
-      throw FitError(fmt::format("camera {}: found no frames, a fit needs {} at least",
-                                 input.cameras[camera].name, kFewestFrames));
-    }
-    skews.push_back({best->skew_ppm, best->skew_error_ppm});
+std::vector<std::optional<FittedValue>> skews_of(std::size_t cameras,
+                                                 const std::vector<StreamFit>& streams) {
+  std::vector<std::optional<FittedValue>> skews(cameras);
+  for (const StreamFit& stream : streams) {
+    std::optional<FittedValue>& best = skews[stream.camera];
+    if (!best || stream.skew_ppm.error < best->error) best = stream.skew_ppm;
   }
   return skews;
 }
 
+void need_frames(const std::string& camera, const FitStream& stream) {
+  if (stream.frames.size() >= kFewestFrames) return;
+  throw FitError(fmt::format("camera {}, {}: found {}, a fit needs {} at least", camera,
+                             stream.kind, counted(stream.frames.size(), "frame"), kFewestFrames));
+}
+
+void add_drops(const FitStream& stream, DropFit& drops, double& lost_together) {
+  const FrameAccount& account = stream.account;
+  drops.lost += account.lost;
+  drops.counted += account.delivered + account.lost;
+  lost_together += static_cast<double>(account.lost) * stream.lost_together;
+}
+
+// The interval of as many losses as are independent.
+Interval drop_interval(const DropFit& drops, double lost_together) {
+  const auto lost = static_cast<double>(drops.lost);
+  const double together = drops.lost > 0 ? std::max(1.0, lost_together / lost) : 1;
+  return binomial_interval(std::llround(lost / together),
+                           std::llround(static_cast<double>(drops.counted) / together));
+}
+
+std::optional<DropFit> drops_of(const std::vector<FitStream>& streams) {
+  std::optional<DropFit> drops;
+  double lost_together = 0;
+  for (const FitStream& stream : streams) {
+    if (!stream.counted || stream.account.delivered == 0) continue;
+    if (!drops) drops.emplace();
+    add_drops(stream, *drops, lost_together);
+  }
+  if (drops) drops->interval = drop_interval(*drops, lost_together);
+  return drops;
+}
+
 }  // namespace
 
-double successive_rank_correlation(const std::vector<double>& values,
-                                   const std::vector<bool>& follows) {
+Interval interval_of(const FittedValue& value) {
+  constexpr double kTail = 0.025;
+  const double half = student_t_exceeded(kTail, value.freedom) * value.error;
+  return {.low = value.value - half, .high = value.value + half};
+}
+
+FittedValue successive_rank_correlation(const std::vector<double>& values,
+                                        const std::vector<bool>& follows) {
   const std::vector<double> ranks = ranks_of(values);
   std::vector<double> before;
   std::vector<double> after;
@@ -178,29 +243,27 @@ double successive_rank_correlation(const std::vector<double>& values,
     before.push_back(ranks[i - 1]);
     after.push_back(ranks[i]);
   }
-  return correlation(before, after);
+  return correlation(std::move(before), std::move(after));
 }
 
 StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
-  check_stamps(camera, stream);
+  need_frames(camera, stream);
   const std::vector<StampedFrame>& frames = stream.frames;
-  const std::vector<LinePoint> points = points_of(frames);
-  const SupportLine line = hull_line(points);
-  const CameraStatistics statistics = camera_statistics(frames);
+  const StampPoints points = stamp_points(frames);
+  const RateLine line = rate_line(points.device_ms, points.distance_ms);
   StreamFit fit;
   fit.camera = stream.camera;
   fit.kind = stream.kind;
-  fit.frames = statistics.frames;
+  fit.frames = static_cast<std::int64_t>(frames.size());
   fit.account = stream.account;
-  fit.span_s = statistics.span_s;
-  fit.skew_ppm = skew_of_slope_ppm(line.slope);
-  fit.skew_error_ppm = skew_error_ppm(points);
-  if (is_doubtful_drift(fit.skew_ppm)) {
+  fit.span_s = (points.device_ms.back() + points.distance_ms.back()) * 1e-3;
+  const double error_ppm = line.error / std::pow(1 + line.slope, 2) * 1e6;
+  fit.skew_ppm = {skew_of_slope_ppm(line.slope), error_ppm, line.freedom};
+  if (is_doubtful_drift(fit.skew_ppm.value)) {
     throw FitError(
         fmt::format("camera {}, {}: found a drift of {:.0f} ppm, allowed that of a camera's clock, "
-                    "some tens of "
-                    "ppm; are both stamps milliseconds of one camera?",
-                    camera, stream.kind, fit.skew_ppm));
+                    "some tens of ppm and 1 % at most; are both stamps milliseconds of one camera?",
+                    camera, stream.kind, fit.skew_ppm.value));
   }
   fit.excess_ms = excess_of(points, fit.span_s);
   fit.rise_ms = rise_ms(points, line);
@@ -226,24 +289,38 @@ std::vector<double> quantile_table(const std::vector<double>& sorted) {
 }
 
 RigFit fit_rig(const FitInput& input) {
-  if (input.cameras.empty()) throw FitError("the recording has no cameras");
+  if (input.streams.empty()) throw FitError("the recording has no frames");
+  const auto is_long = [](const FitStream& stream) {
+    return stream.frames.size() >= kFewestFrames;
+  };
+  if (std::ranges::none_of(input.streams, is_long)) {
+    const FitStream& first = input.streams.front();
+    need_frames(input.cameras[first.camera].name, first);
+  }
   RigFit fit;
+  fit.left_out = input.left_out;
   for (const FitStream& stream : input.streams) {
-    fit.streams.push_back(fit_stream(input.cameras[stream.camera].name, stream));
-    const StreamFit& added = fit.streams.back();
-    fit.frames += added.frames;
-    if (stream.counted) {
-      if (!fit.drops) fit.drops.emplace();
-      fit.drops->lost += added.account.lost;
-      fit.drops->counted += added.account.delivered + added.account.lost;
+    const std::string& camera = input.cameras[stream.camera].name;
+    if (!is_long(stream)) {
+      fit.left_out.push_back(fmt::format("camera {}, {}: all of it, {} where {} are needed", camera,
+                                         stream.kind, counted(stream.frames.size(), "frame"),
+                                         kFewestFrames));
+      continue;
     }
+    fit.streams.push_back(fit_stream(camera, stream));
+    const StreamFit& added = fit.streams.back();
+    for (const std::string& remark : stream_remarks(stream, added)) {
+      fit.left_out.push_back(fmt::format("camera {}, {}: {}", camera, stream.kind, remark));
+    }
+    fit.has_delays = fit.has_delays || !has_one_clock(stream.frames);
+    fit.frames += added.frames;
     fit.excess_ms.insert(fit.excess_ms.end(), added.excess_ms.begin(), added.excess_ms.end());
   }
-  fit.skew_ppm = skews_of(input, fit.streams);
+  fit.skew_ppm = skews_of(input.cameras.size(), fit.streams);
   std::sort(fit.excess_ms.begin(), fit.excess_ms.end());
   fit.delivery_quantiles_ms = quantile_table(fit.excess_ms);
   fit.correlation = correlation_of(fit.streams);
-  if (fit.drops) fit.drops->interval = binomial_interval(fit.drops->lost, fit.drops->counted);
+  fit.drops = drops_of(input.streams);
   fit.network = fit_exchanges(input);
   return fit;
 }

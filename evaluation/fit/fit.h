@@ -9,9 +9,11 @@
 //  - from exchanges between hosts: the latency of one way, offsets and rates.
 //
 // No fit gives what stamps alone cannot show: the constant part of every delay, an asymmetry of a
-// link, and jitter that cameras have in common (all are taken to be independent).
+// link, and jitter that cameras have in common (all are taken to be independent). What a recording
+// has and no model can take is said to be left out.
 //
-// Errors: FitError. Complexity: O(n log n) in the frames and exchanges.
+// Errors: FitError, if no stream is left, or device stamps are not of the arrivals' unit.
+// Complexity: O(n log n) in the frames and exchanges.
 //
 //   const RigFit fit = fit_rig(input);
 #pragma once
@@ -44,11 +46,17 @@ namespace simbench::evaluation {
 // Source: docs/reference/host_sync.md section 3; Dempster, Laird and Rubin 1977, "Maximum
 // likelihood from incomplete data via the EM algorithm".
 
-// A value with its standard error.
+// A value with its standard error, which is known as well as so many degrees of freedom (Student's)
+// have it.
 struct FittedValue {
   double value = 0;
   double error = 0;
+  double freedom = kManyDegrees;
+  static constexpr double kManyDegrees = 1e6;  // as good as a normal distribution
 };
+
+// The 95 % interval of a value.
+Interval interval_of(const FittedValue& value);
 
 struct HostClockFit {
   std::uint32_t host = 0;                             // not the master
@@ -72,26 +80,26 @@ std::vector<double> one_way_table(const std::vector<double>& round_trips);
 
 // The fit of one stream: the camera's rate, and the lateness of each frame.
 //
-// Arrivals are late, never early. Therefore the highest line below all of them maps the camera's
-// clock to the host's, except for a constant: it is the edge of the lower convex hull over the
-// middle of the device stamps.
+// The rate is that of the line under the arrivals (rate_line.h), with its error and the error's
+// degrees of freedom. It is the mean rate over the recording; the error has the jitter's share and
+// that of a rate that wanders.
 //
 // A frame's excess is its delivery delay less the smallest one, which stamps cannot show: its
-// height above that edge, block by block. Blocks last kBlockS at least, and have kBlockFrames at
-// least, so that a rate that changes over minutes is not taken for delay. Excess contains
-// everything else that varies between the camera's stamp and the arrival stamp: bus, kernel,
-// scheduling, noise and steps of both stamps.
+// height over the line of its block, from the block's lowest frame on. Blocks last kBlockS at
+// least, and have kBlockFrames at least, so that a rate that changes over minutes is not taken for
+// delay. Excess contains everything else that varies between the camera's stamp and the arrival
+// stamp: bus, kernel, scheduling, noise and steps of both stamps.
 //
-// The standard error of the rate is that of the hull lines of eight interleaved parts, divided by
-// sqrt(8): cautious, since a hull's error falls faster than that. It does not cover a rate that
-// changes; rise_ms shows that. The rank correlation (Spearman's) is between the excess of a frame
-// and of the next by the counter.
+// The rank correlation (Spearman's) is between the excess of a frame and of the next by the
+// counter. Its error is that of the means of kErrorBlocks successive parts, which have what lasts
+// longer than a frame.
 //
-// Source: docs/reference/device_time.md section 1 (hull); laws/lower_hull.h.
-// Errors: FitError: too few frames, device stamps or arrivals that go back.
+// Source: docs/reference/device_time.md section 1.
+// Errors: FitError: too few frames, or stamps of another unit (a drift beyond 1 %).
 inline constexpr std::size_t kFewestFrames = 100;
 inline constexpr double kBlockS = 30;
 inline constexpr std::size_t kBlockFrames = 300;
+inline constexpr std::size_t kErrorBlocks = 16;
 
 struct StreamFit {
   std::size_t camera = 0;
@@ -99,12 +107,12 @@ struct StreamFit {
   std::int64_t frames = 0;
   FrameAccount account;  // of the whole recording
   double span_s = 0;
-  double skew_ppm = 0;  // device rate / host rate - 1, lower hull
-  double skew_error_ppm = 0;
-  // The least height above the line in the worst tenth of the recording: large if the rate changed.
+  FittedValue skew_ppm;  // device rate / host rate - 1
+  // The farthest that the lower quartile of a tenth of the recording is off the line: large if the
+  // rate changed, or the delays did for long.
   double rise_ms = 0;
   std::vector<double> excess_ms;  // frame by frame, 0 at least
-  double rank_correlation = 0;    // NaN without pairs, or without any difference
+  FittedValue rank_correlation;   // NaN without pairs, or without any difference
   std::int64_t pairs = 0;
 };
 
@@ -112,8 +120,8 @@ struct StreamFit {
 StreamFit fit_stream(const std::string& camera, const FitStream& stream);
 
 // Returns Spearman's correlation of successive values (follows[i]: value i follows value i - 1).
-double successive_rank_correlation(const std::vector<double>& values,
-                                   const std::vector<bool>& follows);
+FittedValue successive_rank_correlation(const std::vector<double>& values,
+                                        const std::vector<bool>& follows);
 
 // From the slope of (host - device) over device time to the rate device / host - 1.
 double skew_of_slope_ppm(double slope);
@@ -124,20 +132,23 @@ inline constexpr std::size_t kLongestTable = 1001;
 struct DropFit {
   std::int64_t lost = 0;
   std::int64_t counted = 0;  // with the lost ones
-  Interval interval{};       // of the share, 95 %
+  // The 95 % interval of the share: Clopper and Pearson's, frames that are lost together as one.
+  Interval interval{};
 
   double share() const { return static_cast<double>(lost) / static_cast<double>(counted); }
 };
 
 struct RigFit {
-  std::vector<StreamFit> streams;
-  std::vector<FittedValue> skew_ppm;  // by camera
-  std::vector<double> excess_ms;      // of all streams, sorted
+  std::vector<StreamFit> streams;                    // those with kFewestFrames
+  std::vector<std::optional<FittedValue>> skew_ppm;  // by camera; nothing: none of its streams has
+  std::vector<double> excess_ms;                     // of all streams, sorted
   std::vector<double> delivery_quantiles_ms;
   std::optional<FittedValue> correlation;  // nothing: too few pairs, or no jitter at all
+  bool has_delays = false;  // false: in all streams arrivals and device stamps are the same
   std::int64_t frames = 0;
   std::optional<DropFit> drops;  // of the whole recording; nothing: no stream counts its frames
   NetworkFit network;
+  std::vector<std::string> left_out;  // those of the input, and streams
 };
 
 RigFit fit_rig(const FitInput& input);

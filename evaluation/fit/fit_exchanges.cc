@@ -105,7 +105,7 @@ std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
   }
   const double error_ppm = std::sqrt(squares / static_cast<double>(at.size() - 2) / spread) * 1e6;
   if (!(error_ppm <= kLargestErrorPpm)) return std::nullopt;
-  return FittedValue{skew_of_slope_ppm(line.slope), error_ppm};
+  return FittedValue{skew_of_slope_ppm(line.slope), error_ppm, static_cast<double>(at.size() - 2)};
 }
 
 // The cells of one way, from the least latency on; round trips have twice as many.

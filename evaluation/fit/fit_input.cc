@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
+#include <utility>
 #include <variant>
 
 #include "algorithms/ports/time.h"
+#include "evaluation/fit/fit_frames.h"
 #include "evaluation/frames/camera_statistics.h"
 #include "evaluation/frames/frame_account.h"
 
@@ -18,6 +21,20 @@ const std::string kOneHost = "host0";
 void name_all(std::vector<std::string>& names, std::size_t count, const char* kind) {
   names.resize(std::min(names.size(), count));
   while (names.size() < count) names.push_back(fmt::format("{}{}", kind, names.size()));
+}
+
+// Adds a stream with its usable frames; `delivered` is unwrapped.
+void add_stream(FitInput& input, FitStream stream, std::span<const StampedFrame> delivered,
+                std::optional<Nanoseconds> warm_up) {
+  UsableFrames usable = usable_frames(delivered, stream.counted, warm_up);
+  for (const std::string& line : usable.left_out) {
+    input.left_out.push_back(
+        fmt::format("camera {}, {}: {}", input.cameras[stream.camera].name, stream.kind, line));
+  }
+  stream.frames = std::move(usable.frames);
+  stream.account = usable.account;
+  stream.lost_together = usable.lost_together;
+  input.streams.push_back(std::move(stream));
 }
 
 }  // namespace
@@ -68,7 +85,6 @@ FitInput FitInputSink::take() {
   for (const auto& [key, stamps] : stamps_) {
     const bool has_frame_stamps =
         std::any_of(stamps.begin(), stamps.end(), [](const Stamps& s) { return s.frame_us != 0; });
-    const std::int64_t begin_ns = stamps.front().arrival_ns + from_ms(options_.warm_up_ms).count();
     std::vector<StampedFrame> frames;
     for (const Stamps& s : stamps) {
       const std::int64_t device_us = has_frame_stamps ? s.frame_us : s.sensor_us;
@@ -76,14 +92,9 @@ FitInput FitInputSink::take() {
                         .sensor = Nanoseconds(device_us * 1000),
                         .arrival = Nanoseconds(s.arrival_ns)});
     }
-    frames = unwrapped(frames);
-    const FrameAccount account = frame_account(frames, /*counted=*/true);
-    std::erase_if(
-        frames, [begin_ns](const StampedFrame& frame) { return frame.arrival.count() < begin_ns; });
-    input_.streams.push_back({.camera = key.first,
-                              .kind = std::string(to_text(key.second)),
-                              .frames = std::move(frames),
-                              .account = account});
+    add_stream(input_,
+               {.camera = key.first, .kind = std::string(to_text(key.second)), .frames = {}},
+               unwrapped(frames), from_ms(options_.warm_up_ms));
   }
   stamps_.clear();
   return std::move(input_);
@@ -109,19 +120,17 @@ FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host) {
     const std::size_t camera = number_of(input.cameras, stream.camera, [&] {
       return FitCamera{stream.camera, static_cast<std::uint32_t>(host_number)};
     });
-    std::vector<StampedFrame> frames = unwrapped(stream.frames);
-    const FrameAccount account = frame_account(frames, stream.counted);
-    input.streams.push_back({.camera = camera,
-                             .kind = stream.stream,
-                             .frames = std::move(frames),
-                             .account = account,
-                             .counted = stream.counted});
+    add_stream(input,
+               {.camera = camera, .kind = stream.stream, .frames = {}, .counted = stream.counted},
+               unwrapped(stream.frames), std::nullopt);
   }
   return input;
 }
 
 std::pair<FitInput, FitInput> halves(const FitInput& input) {
   std::pair<FitInput, FitInput> result{input, input};
+  result.first.left_out.clear();
+  result.second.left_out.clear();
   for (std::size_t i = 0; i < input.streams.size(); ++i) {
     auto& first = result.first.streams[i].frames;
     auto& second = result.second.streams[i].frames;
@@ -131,6 +140,8 @@ std::pair<FitInput, FitInput> halves(const FitInput& input) {
     const bool counted = input.streams[i].counted;
     result.first.streams[i].account = frame_account(first, counted);
     result.second.streams[i].account = frame_account(second, counted);
+    result.first.streams[i].lost_together = lost_together(first, counted);
+    result.second.streams[i].lost_together = lost_together(second, counted);
   }
   return result;
 }

@@ -3,7 +3,8 @@
 // Arrivals are on the hosts' steady clocks where the recording has them, so that no setting of a
 // system clock is taken for delay. Device stamps are those of the start of transmission where the
 // camera has them (the delay from there to the arrival does not depend on the exposure), else the
-// camera's only stamp. Both in nanoseconds, device stamps with their register unwrapped.
+// camera's only stamp. Both in nanoseconds, device stamps with their register unwrapped. Streams
+// have the frames that a fit uses (fit_frames.h), in order of their device stamps.
 //
 //   FitInputSink sink({.warm_up_ms = 5000});
 //   folder.play(capture, sink);
@@ -38,13 +39,14 @@ struct FitCamera {
   std::uint32_t host = 0;
 };
 
-// One stream of one camera, frames in order of delivery.
+// One stream of one camera.
 struct FitStream {
   std::size_t camera = 0;
   std::string kind;
-  std::vector<StampedFrame> frames;
-  FrameAccount account{};  // of the whole recording, also of what is discarded at its start
-  bool counted = true;     // by the camera: the account knows lost frames
+  std::vector<StampedFrame> frames;  // device stamps ascend; arrivals may go back
+  FrameAccount account{};            // of the whole recording, also of what is left out
+  bool counted = true;               // by the camera: the account knows lost frames
+  double lost_together = 1;          // likewise of the whole recording (fit_frames.h)
 };
 
 struct FitInput {
@@ -53,6 +55,7 @@ struct FitInput {
   std::vector<FitStream> streams;
   // Exchanges and clock adjustments, in order; other kinds do not occur.
   std::vector<RecordingEvent> clock_events;
+  std::vector<std::string> left_out;  // a line each that names the stream: what, and where
 };
 
 struct FitInputOptions {
@@ -91,7 +94,8 @@ class FitInputSink final : public RecordingSink {
 // whatever the files state.
 FitInput fit_input(const std::vector<RecordedStream>& streams, bool one_host);
 
-// Returns the halves of every stream, for a fit to one and a test on the other.
+// Returns the halves of every stream, for a fit to one and a test on the other. Nothing is said to
+// be left out of them.
 std::pair<FitInput, FitInput> halves(const FitInput& input);
 
 }  // namespace simbench::evaluation

@@ -25,36 +25,52 @@ using Lines = std::vector<std::string>;
 
 constexpr std::size_t kCamerasByName = 6;
 
+constexpr const char* kFastCamera = "d435";
+constexpr std::int64_t kFastWidth = 848;
+constexpr std::int64_t kFastHeight = 100;
+constexpr double kFastModeHz = 300;
+
+// "2.1 +- 0.4 [1.2, 3.0]"
+std::string skew_text(const std::optional<FittedValue>& skew_ppm) {
+  if (!skew_ppm) return "not found";
+  const Interval interval = interval_of(*skew_ppm);
+  return fmt::format("{:.3f} +- {:.3f} [{:.3f}, {:.3f}]", skew_ppm->value, skew_ppm->error,
+                     interval.low, interval.high);
+}
+
+std::vector<FittedValue> found_skews(const RigFit& fit) {
+  std::vector<FittedValue> found;
+  for (const std::optional<FittedValue>& skew : fit.skew_ppm) {
+    if (skew) found.push_back(*skew);
+  }
+  return found;
+}
+
 std::string skew_line(const RigFit& fit, const FitInput& input) {
   std::string values;
   if (fit.skew_ppm.size() <= kCamerasByName) {
     Lines each;
     for (std::size_t i = 0; i < fit.skew_ppm.size(); ++i) {
-      each.push_back(fmt::format("{} {:.3f} +- {:.3f}", input.cameras[i].name,
-                                 fit.skew_ppm[i].value, fit.skew_ppm[i].error));
+      each.push_back(fmt::format("{} {}", input.cameras[i].name, skew_text(fit.skew_ppm[i])));
     }
     values = fmt::format("{}", fmt::join(each, ", "));
   } else {
-    const auto by = [](double FittedValue::*member) {
-      return [member](const FittedValue& a, const FittedValue& b) { return a.*member < b.*member; };
-    };
-    const auto [low, high] =
-        std::minmax_element(fit.skew_ppm.begin(), fit.skew_ppm.end(), by(&FittedValue::value));
-    const auto worst =
-        std::max_element(fit.skew_ppm.begin(), fit.skew_ppm.end(), by(&FittedValue::error));
+    const std::vector<FittedValue> found = found_skews(fit);
+    const auto [low, high] = std::ranges::minmax(found, {}, &FittedValue::value);
+    const FittedValue worst = std::ranges::max(found, {}, &FittedValue::error);
     values = fmt::format("{} cameras from {:.3f} to {:.3f}, +- {:.3f} at most", fit.skew_ppm.size(),
-                         low->value, high->value, worst->error);
+                         low.value, high.value, worst.error);
   }
   return fmt::format(
-      "/cameras/skew_of_camera_ppm: {} ppm (standard error), each against its host's clock, by the "
-      "lower hull of its arrivals",
+      "/cameras/skew_of_camera_ppm: {} ppm (standard error, 95 % interval), each against its "
+      "host's clock, by the line under its arrivals",
       values);
 }
 
 std::string delivery_line(const RigFit& fit) {
   return fmt::format(
-      "/usb/delivery_quantiles_ms: {} quantiles of the excess of {} frames over the lower hulls of "
-      "their streams; median {:.4f}, 99 % {:.4f}, largest {:.4f} ms",
+      "/usb/delivery_quantiles_ms: {} quantiles of the excess of {} frames over the quickest "
+      "of their streams; median {:.4f}, 99 % {:.4f}, largest {:.4f} ms",
       fit.delivery_quantiles_ms.size(), fit.frames, quantile(fit.excess_ms, 0.5),
       quantile(fit.excess_ms, 0.99), fit.excess_ms.back());
 }
@@ -135,14 +151,15 @@ void add_network_lines(const NetworkFit& network, Lines& lines) {
   }
 }
 
-// Adds cameras whose rate changed too much for a line.
+// Adds streams whose rate or delays changed too much for a line.
 void add_rise_lines(const RigFit& fit, const FitInput& input, Lines& lines) {
   constexpr double kNoticed = 0.5;  // of the median excess
   for (const StreamFit& stream : fit.streams) {
     if (stream.rise_ms <= kNoticed * quantile(stream.excess_ms, 0.5)) continue;
     lines.push_back(fmt::format(
-        "camera {}: its rate was not constant, for a tenth of the recording no frame came within "
-        "{:.4f} ms of the line; the model's oscillators wander as the base has it",
+        "camera {}: its rate or its delays were not constant, for a tenth of the recording the "
+        "lower quartile of the arrivals is {:.4f} ms off the line; the model's oscillators wander "
+        "as the base has it",
         input.cameras[stream.camera].name, stream.rise_ms));
   }
 }
@@ -226,17 +243,35 @@ Json places_of(const FitInput& input) {
   return places;
 }
 
+// By camera; the mean of the others for those without.
+std::vector<double> modelled_skews_ppm(const RigFit& fit) {
+  const double mean = mean_of(collected(found_skews(fit), &FittedValue::value));
+  std::vector<double> skews;
+  for (const std::optional<FittedValue>& skew : fit.skew_ppm) {
+    skews.push_back(skew ? skew->value : mean);
+  }
+  return skews;
+}
+
+// The base's streams in another mode.
+Json streams_json(const FitBase& base) {
+  Json streams = Json::parse(base.scenario.resolved_json())["cameras"]["streams"];
+  for (Json& stream : streams) {
+    stream["mode_rate_hz"] = *base.mode_rate_hz;
+    if (!base.fast_camera) continue;
+    stream["width"] = kFastWidth;
+    stream["height"] = kFastHeight;
+  }
+  return streams;
+}
+
 Json cameras_json(const RigFit& fit, const FitInput& input, const FitBase& base, Tables& tables) {
   Json cameras = places_of(input);
-  const std::vector<double> skews = collected(fit.skew_ppm, &FittedValue::value);
-  cameras["skew_of_camera_ppm"] = tables.mark(skews, 4);
+  cameras["skew_of_camera_ppm"] = tables.mark(modelled_skews_ppm(fit), 4);
   if (fit.drops) cameras["drop_probability"] = rounded(fit.drops->share(), 1e-9);
   cameras["sensor_stamp_jitter_sigma_us"] = 0;
-  if (base.mode_rate_hz) {
-    Json streams = Json::parse(base.scenario.resolved_json())["cameras"]["streams"];
-    for (Json& stream : streams) stream["mode_rate_hz"] = *base.mode_rate_hz;
-    cameras["streams"] = streams;
-  }
+  if (base.mode_rate_hz) cameras["streams"] = streams_json(base);
+  if (base.fast_camera) cameras["model"] = kFastCamera;
   return cameras;
 }
 
@@ -330,6 +365,11 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
         "is in the measured delays as well and counts twice",
         to_text(base.usb.sharing)));
   }
+  for (std::size_t i = 0; i < fit.skew_ppm.size(); ++i) {
+    if (fit.skew_ppm[i]) continue;
+    lines.push_back(
+        fmt::format("the rate of camera {}: the mean of the others", input.cameras[i].name));
+  }
   if (!fit.drops) lines.emplace_back("lost frames: these cameras do not count their frames");
   if (const std::vector<std::string> names = cameras_from_1970(input); !names.empty()) {
     lines.push_back(fmt::format(
@@ -342,11 +382,25 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
 
 std::string summary_of(const FitModel& model, const RigFit& fit, const FitBase& base) {
   const std::string summary = fmt::format(
-      "A fit of {} to a recording. {}. Not identified: {}. Contained in the tables, and therefore "
-      "switched off: jitter common to a host, load bursts, noise and steps of the stamps{}.",
+      "A fit of {} to a recording. {}. Not identified: {}. Left out: {}. Contained in the tables, "
+      "and therefore switched off: jitter common to a host, load bursts, noise and steps of the "
+      "stamps{}.",
       base.scenario.name, fmt::join(model.evidence, "; "), fmt::join(model.not_identified, "; "),
+      model.left_out.empty() ? "nothing" : fmt::format("{}", fmt::join(model.left_out, "; ")),
       fit.network.latency_quantiles_ms.empty() ? "" : ", what messages cost the hosts");
   return summary.substr(0, kLongestSummary);
+}
+
+// The rate of the slowest stream that a fit can use.
+double slowest_rate_hz(const FitInput& input) {
+  Nanoseconds longest{};
+  for (const FitStream& stream : input.streams) {
+    if (stream.frames.size() < kFewestFrames) continue;
+    longest = std::max(longest, median_period(stream.frames));
+  }
+  if (longest.count() > 0) return 1e9 / static_cast<double>(longest.count());
+  fit_rig(input);  // says what it lacks
+  throw FitError("the recording has no frame period");
 }
 
 }  // namespace
@@ -354,25 +408,23 @@ std::string summary_of(const FitModel& model, const RigFit& fit, const FitBase& 
 FitBase default_base(const FitInput& input) {
   const char* const name = input.hosts.size() > 1 ? "6cam_2host_30fps" : "3cam_1host_30fps";
   FitBase base{.scenario = scenarios::load_scenario(name), .stated = name};
-  Nanoseconds longest{};
-  for (const FitStream& stream : input.streams) {
-    longest = std::max(longest, median_period(stream.frames));
-  }
-  if (longest.count() <= 0) throw FitError("the recording has no frame period");
-  const double rate_hz = 1e9 / static_cast<double>(longest.count());
+  const double rate_hz = slowest_rate_hz(input);
   constexpr std::array<double, 4> kModesHz = {15, 30, 60, 90};  // of the base's image size
   const double guard = base.scenario.cameras.genlock_guard_fraction;
+  const auto fastest_hz = [guard](double mode_hz) { return mode_hz / 2 / (1 - guard); };
   const auto* const mode = std::find_if(kModesHz.begin(), kModesHz.end(), [&](double mode_hz) {
-    return rate_hz <= mode_hz / 2 / (1 - guard);
+    return rate_hz <= fastest_hz(mode_hz);
   });
-  if (mode == kModesHz.end()) {
-    throw FitError(fmt::format(
-        "the cameras run at {:.3f} Hz, allowed at most {:.3f} Hz without --base: state a scenario "
-        "with such cameras",
-        rate_hz, kModesHz.back() / 2 / (1 - guard)));
+  base.fast_camera = mode == kModesHz.end();
+  base.mode_rate_hz = base.fast_camera ? kFastModeHz : *mode;
+  base.rate_hz = std::min(rate_hz, fastest_hz(*base.mode_rate_hz));
+  if (*base.rate_hz < rate_hz) {
+    base.left_out = fmt::format(
+        "the frame rate: the cameras run at {:.3f} Hz, no built-in camera follows a trigger faster "
+        "than {:.3f} Hz, which the model has; a --base with such cameras takes the recording as it "
+        "is",
+        rate_hz, *base.rate_hz);
   }
-  base.rate_hz = rate_hz;
-  base.mode_rate_hz = *mode;
   return base;
 }
 
@@ -381,6 +433,8 @@ FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base
   FitModel model;
   model.evidence = fit_evidence(fit, input);
   model.not_identified = not_identified(fit, input, base.scenario);
+  model.left_out = fit.left_out;
+  if (!base.left_out.empty()) model.left_out.push_back(base.left_out);
   Tables tables;
   Json document = base.stated.empty() ? Json::parse(base.scenario.resolved_json())
                                       : Json{{"base", stated_base(base, path)}};

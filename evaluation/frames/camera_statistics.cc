@@ -241,10 +241,10 @@ std::vector<std::string> doubts_of(const RecordedStream& stream) {
   if (has_one_clock(stream.frames)) {
     add("arrivals and sensor stamps are the same, as from one column of a file: there is one clock "
         "only, and drift, residual and excess say nothing");
-  } else if (counts_from_1970(frames)) {
-    add("sensor stamps count from 1970, as a computer's clock does and no camera's: with "
-        "librealsense's global time they are the host's own estimate, and drift, jitter and "
-        "residual are those of the estimate. Record with global time off");
+  } else if (counts_from_1970(frames) && stream.realsense) {
+    add("sensor stamps count from 1970: with librealsense's global time they are the host's own "
+        "estimate, and drift, jitter and residual are those of the estimate. Record with global "
+        "time off");
   } else if (is_doubtful_drift(found.drift_ppm)) {
     add(
         fmt::format("a drift of {:.0f} ppm is no camera's, whose clock is right to some tens of "

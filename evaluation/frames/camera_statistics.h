@@ -69,7 +69,8 @@ std::vector<std::string> doubts_of(const RecordedStream& stream);
 // (half range rule: late frames are no wrap). Stamps beyond the register's range stay as they are.
 std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
 
-// Whether the stamps count from 1970, as those of global time do and no camera's.
+// Whether the stamps count from 1970, as those of a clock that is set: of a computer, of a camera
+// under PTP, of librealsense's global time.
 bool counts_from_1970(std::span<const StampedFrame> frames);
 
 // Whether every frame arrived at its sensor stamp, as where a file has one column for both: there

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "evaluation/frames/camera_statistics.h"
-#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kLongestPausePeriods = 1000;  // a longer gap is a pause, or a clock that was set
-constexpr std::size_t kLongestPeriodSpan = 30;
+constexpr std::int64_t kLongestPausePeriods = 1000;  // a longer gap is a pause, or a clock was set
 
 double sensor_interval_ms(const StampedFrame& before, const StampedFrame& now) {
   return difference_ms(now.sensor.count(), before.sensor.count());
@@ -30,18 +27,9 @@ bool is_counter_gap(std::uint64_t step, const StampedFrame& before, const Stampe
   return static_cast<double>(step) <= kMargin + 2 * passed_ms / *period_ms;
 }
 
-// The periods between two frames that have no frame, by the camera's clock.
-std::int64_t missing_periods(const StampedFrame& before, const StampedFrame& now,
-                             std::optional<double> period_ms) {
-  if (!period_ms) return 0;
-  const double periods = std::round(sensor_interval_ms(before, now) / *period_ms);
-  if (!(periods > 1) || periods > kLongestPausePeriods) return 0;
-  return std::llround(periods) - 1;
-}
-
 FrameGap gap_between(const StampedFrame& before, const StampedFrame& now, bool counted,
-                     std::optional<double> period_ms) {
-  const std::int64_t missing = missing_periods(before, now, period_ms);
+                     std::optional<double> period_ms, std::int64_t missing) {
+  if (missing >= kLongestPausePeriods) missing = 0;
   if (!counted) return {.unknown = missing};
   if (now.counter <= before.counter) return {.unknown = missing, .counter_restarts = true};
   const std::uint64_t step = now.counter - before.counter;
@@ -52,45 +40,22 @@ FrameGap gap_between(const StampedFrame& before, const StampedFrame& now, bool c
   return {.lost = lost, .never_exposed = std::max<std::int64_t>(0, missing - lost)};
 }
 
-}  // namespace
-
-std::optional<double> stream_period_ms(std::span<const StampedFrame> frames) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    const double interval = sensor_interval_ms(frames[i - 1], frames[i]);
-    if (interval > 0) intervals.push_back(interval);
-  }
-  if (intervals.empty()) return std::nullopt;
-  const double interval = median(std::move(intervals));
-  const std::size_t span = std::min<std::size_t>(kLongestPeriodSpan, frames.size() / 4);
-  if (span < 2) return interval;
-  std::vector<double> periods(1);
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    periods.push_back(periods.back() +
-                      std::round(sensor_interval_ms(frames[i - 1], frames[i]) / interval));
-  }
-  std::vector<double> means;
-  for (std::size_t i = span; i < frames.size(); ++i) {
-    const double count = periods[i] - periods[i - span];
-    const double length = sensor_interval_ms(frames[i - span], frames[i]);
-    if (count > 0 && length > 0) means.push_back(length / count);
-  }
-  return means.empty() ? interval : median(std::move(means));
-}
-
-std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool counted) {
-  const std::optional<double> period_ms = stream_period_ms(frames);
+std::vector<FrameGap> gaps_on(const std::optional<StampGrid>& grid,
+                              std::span<const StampedFrame> frames, bool counted) {
+  std::optional<double> period_ms;
+  if (grid) period_ms = grid->period_ms;
   std::vector<FrameGap> gaps;
   gaps.reserve(frames.size());
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    gaps.push_back(gap_between(frames[i - 1], frames[i], counted, period_ms));
+    gaps.push_back(
+        gap_between(frames[i - 1], frames[i], counted, period_ms, grid ? grid->missing[i] : 0));
   }
   return gaps;
 }
 
-FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted) {
-  FrameAccount account{.delivered = static_cast<std::int64_t>(frames.size())};
-  for (const FrameGap& gap : frame_gaps(frames, counted)) {
+FrameAccount account_of(const std::vector<FrameGap>& gaps, std::size_t frames) {
+  FrameAccount account{.delivered = static_cast<std::int64_t>(frames)};
+  for (const FrameGap& gap : gaps) {
     account.lost += gap.lost;
     account.never_exposed += gap.never_exposed;
     account.unknown += gap.unknown;
@@ -99,6 +64,26 @@ FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted) {
     account.largest_jump = std::max(account.largest_jump, gap.counter_jump);
   }
   return account;
+}
+
+}  // namespace
+
+std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool counted) {
+  return gaps_on(stamp_grid(frames), frames, counted);
+}
+
+std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool counted,
+                                 const StampGrid& grid) {
+  return gaps_on(grid, frames, counted);
+}
+
+FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted) {
+  return account_of(frame_gaps(frames, counted), frames.size());
+}
+
+FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted,
+                           const StampGrid& grid) {
+  return account_of(frame_gaps(frames, counted, grid), frames.size());
 }
 
 FrameAccount frame_account(const RecordedStream& stream) {

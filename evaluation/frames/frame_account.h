@@ -1,9 +1,9 @@
 // What became of the frames of a stream: delivered, lost, never exposed, unknown.
 //
 // A camera counts the frames that it exposes, so a gap of its counter is frames that were lost
-// after the camera had counted them. A period of its clock in which the counter stands still was
-// never exposed. Where the counter starts again or jumps further than the time allows, nothing
-// tells what became of the periods between two frames: they are unknown, as are all
+// after the camera had counted them. An empty point of its grid (stamp_grid.h) that the counter did
+// not count was never exposed. Where the counter starts again or jumps further than the time
+// allows, nothing tells what became of the periods between two frames: they are unknown, as are all
 // missing periods of a stream without a counter.
 //
 // The account covers the whole stream, from its first frame to its last. What the camera exposed
@@ -16,10 +16,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "evaluation/frames/stamp_grid.h"
 #include "recording/recorded_streams.h"
 
 namespace simbench::evaluation {
@@ -53,8 +53,10 @@ FrameAccount frame_account(const RecordedStream& stream);
 // Gap i lies between frame i and frame i + 1.
 std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool counted);
 
-// The frame period by the camera's clock, in ms; nothing if the stamps do not advance. The median
-// over spans of some frames, since alternating intervals have no middle one.
-std::optional<double> stream_period_ms(std::span<const StampedFrame> frames);
+// On a grid that is known (of exactly these frames), as where other cameras tell it.
+FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted,
+                           const StampGrid& grid);
+std::vector<FrameGap> frame_gaps(std::span<const StampedFrame> frames, bool counted,
+                                 const StampGrid& grid);
 
 }  // namespace simbench::evaluation

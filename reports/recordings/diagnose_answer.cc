@@ -20,34 +20,23 @@ namespace {
 
 using evaluation::CameraDiagnosis;
 using evaluation::Diagnosis;
+using evaluation::Finding;
 using evaluation::Follows;
 using evaluation::GroupVerdict;
+using evaluation::Harm;
 using evaluation::SyncStatus;
 
 std::string verdict_sentence(const GroupVerdict& verdict) {
-  return fmt::format("{}: hardware sync {}{}{}.", verdict.stream, sync_status_text(verdict.status),
-                     verdict.status == SyncStatus::kWorks ? ": " : ", because ", verdict.reason);
-}
-
-// The streams of one camera that do not keep step.
-void add_free_streams(const Diagnosis& diagnosis, std::vector<std::string>& sentences) {
-  constexpr std::size_t kMostShown = 3;
-  std::size_t found = 0;
-  for (const evaluation::PairDiagnosis& pair : diagnosis.pairs) {
-    if (!pair.runs_free || ++found > kMostShown) continue;
-    sentences.push_back(fmt::format("{}: {} runs free of {}, {} ms a minute.",
-                                    capitalised(evaluation::called_camera(pair.camera)),
-                                    pair.stream, pair.against,
-                                    number_text(pair.moves_ms_per_minute)));
-  }
-  if (found > kMostShown) {
-    sentences.push_back(fmt::format("So do {} more pairs of streams.", found - kMostShown));
-  }
+  return fmt::format(
+      "{}: hardware sync {}{}{}.", verdict.stream, sync_status_text(verdict.status),
+      verdict.status == SyncStatus::kDoesNotWork || verdict.status == SyncStatus::kCannotBeTold
+          ? ", because "
+          : ": ",
+      verdict.reason);
 }
 
 std::string streams_sentences(const Diagnosis& diagnosis) {
   std::vector<std::string> sentences;
-  add_free_streams(diagnosis, sentences);
   for (std::size_t i = 1; i < diagnosis.groups.size(); ++i) {
     sentences.push_back(verdict_sentence(diagnosis.groups[i]));
   }
@@ -105,28 +94,59 @@ struct Counted {
   }
 };
 
-// Whose stamps slipped, who lost frames, and where periods have none.
+// Who lost frames, and where periods have none; empty without any.
+std::string missing_text(const Diagnosis& diagnosis) {
+  const Counted lost(diagnosis, &evaluation::FrameAccount::lost);
+  const Counted unexposed(diagnosis, &evaluation::FrameAccount::never_exposed);
+  const Counted unknown(diagnosis, &evaluation::FrameAccount::unknown);
+  std::vector<std::string> parts;
+  if (lost.all > 0) {
+    parts.push_back(fmt::format("{} lost, most by {}", lost.text("frame"), lost.most_of));
+  }
+  if (unexposed.all > 0) {
+    parts.push_back(fmt::format("{} without a frame, most of {}: never exposed",
+                                unexposed.text("period"), unexposed.most_of));
+  }
+  if (unknown.all > 0) {
+    parts.push_back(fmt::format("{} without a frame, most of {}: lost or never exposed",
+                                unknown.text("period"), unknown.most_of));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
 std::string slips_sentence(const Diagnosis& diagnosis) {
   std::vector<std::string> names;
   for (const CameraDiagnosis& camera : diagnosis.cameras) {
     if (slips(camera)) names.push_back(fmt::format("{} ({})", camera.camera, camera.stream));
   }
-  std::string text =
-      names.empty() ? std::string("No camera's stamps slip by whole frames")
-                    : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "));
-  const Counted lost(diagnosis, &evaluation::FrameAccount::lost);
-  const Counted unexposed(diagnosis, &evaluation::FrameAccount::never_exposed);
-  const Counted unknown(diagnosis, &evaluation::FrameAccount::unknown);
-  if (lost.all > 0) text += fmt::format("; {} lost, most by {}", lost.text("frame"), lost.most_of);
-  if (unexposed.all > 0) {
-    text += fmt::format("; {} without a frame, most of {}: never exposed", unexposed.text("period"),
-                        unexposed.most_of);
-  }
-  if (unknown.all > 0) {
-    text += fmt::format("; {} without a frame, most of {}: lost or never exposed",
-                        unknown.text("period"), unknown.most_of);
-  }
-  return text + (lost.all + unexposed.all + unknown.all == 0 ? "; no frame is lost." : ".");
+  return (names.empty()
+              ? std::string("No camera's stamps slip by whole frames")
+              : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "))) +
+         (missing_text(diagnosis).empty() ? "; no frame is missing." : ".");
+}
+
+// The worst that the verdict does not say itself.
+const Finding* worst_beside_verdict(const Diagnosis& diagnosis) {
+  const auto found = std::ranges::find_if(diagnosis.findings, [](const Finding& finding) {
+    return !finding.in_verdict && finding.harm >= Harm::kSerious;
+  });
+  return found == diagnosis.findings.end() ? nullptr : &*found;
+}
+
+// What is wrong first, by harm: a finding, then the verdict, or the other way round.
+std::string headline(const Diagnosis& diagnosis) {
+  const std::string verdict = verdict_sentence(diagnosis.verdict);
+  const std::string missing = missing_text(diagnosis);
+  const std::string but = missing.empty() ? "" : fmt::format(" But {}.", missing);
+  const Finding* worst = worst_beside_verdict(diagnosis);
+  if (worst == nullptr) return verdict + but;
+  const bool of_frames = worst->kind == "lost_frames" || worst->kind == "missing_frames" ||
+                         worst->kind == "skipped_pulses";
+  const auto of_verdict = std::ranges::find(diagnosis.findings, true, &Finding::in_verdict);
+  const bool verdict_first =
+      of_verdict != diagnosis.findings.end() && of_verdict->harm >= worst->harm;
+  const std::string fault = capitalised(worst->text) + ".";
+  return (verdict_first ? verdict + " " + fault : fault + " " + verdict) + (of_frames ? "" : but);
 }
 
 std::string resolution_sentence(const GroupVerdict& verdict) {
@@ -153,7 +173,7 @@ std::string unknown_sentence(const std::vector<std::string>& unknowns) {
 
 AnswerText diagnose_answer(const Diagnosis& diagnosis) {
   if (diagnosis.groups.empty()) return {.lead = "There is no camera."};
-  AnswerText answer{.lead = verdict_sentence(diagnosis.verdict)};
+  AnswerText answer{.lead = headline(diagnosis)};
   answer.add("Streams", streams_sentences(diagnosis));
   answer.add("Drift", drift_sentence(diagnosis));
   answer.add("Slips", slips_sentence(diagnosis));

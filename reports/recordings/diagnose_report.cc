@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "recording/version.h"
+#include "reports/recordings/clock_account_report.h"
 #include "reports/recordings/diagnose_answer.h"
 #include "reports/recordings/diagnose_figure.h"
 #include "reports/text/answer_json.h"
@@ -19,9 +20,12 @@ namespace {
 using evaluation::CameraDiagnosis;
 using evaluation::Diagnosis;
 using evaluation::Finding;
+using evaluation::FindingCertainty;
 using evaluation::Follows;
 using evaluation::GroupVerdict;
+using evaluation::Harm;
 using evaluation::PairDiagnosis;
+using evaluation::ScaleKind;
 using evaluation::SyncStatus;
 
 constexpr std::size_t kMovesColumn = 7;  // of the cameras' table
@@ -30,12 +34,69 @@ const char* status_name(SyncStatus status) {
   switch (status) {
     case SyncStatus::kWorks:
       return "works";
+    case SyncStatus::kWorksWithOffset:
+      return "works_with_offset";
+    case SyncStatus::kSlips:
+      return "slips";
     case SyncStatus::kDoesNotWork:
       return "does_not_work";
     case SyncStatus::kCannotBeTold:
       break;
   }
   return "cannot_be_told";
+}
+
+const char* harm_name(Harm harm) {
+  switch (harm) {
+    case Harm::kStamps:
+      return "stamps";
+    case Harm::kFatal:
+      return "fatal";
+    case Harm::kSerious:
+      return "serious";
+    case Harm::kMinor:
+      return "minor";
+    case Harm::kNote:
+      break;
+  }
+  return "note";
+}
+
+const char* certainty_name(FindingCertainty certainty) {
+  switch (certainty) {
+    case FindingCertainty::kCertain:
+      return "certain";
+    case FindingCertainty::kLikely:
+      return "likely";
+    case FindingCertainty::kPossible:
+      break;
+  }
+  return "possible";
+}
+
+// Cause and evidence, how sure, what to do.
+std::string finding_text(const Finding& finding) {
+  std::string text = finding.text;
+  if (finding.certainty != FindingCertainty::kCertain) {
+    text += fmt::format(" ({})", certainty_name(finding.certainty));
+  }
+  return finding.advice.empty() ? text : fmt::format("{}. To do: {}", text, finding.advice);
+}
+
+const char* scale_name(ScaleKind kind) {
+  switch (kind) {
+    case ScaleKind::kUnixTime:
+      return "arrivals";
+    case ScaleKind::kShifted:
+      return "shifted";
+    case ScaleKind::kAhead:
+      return "ahead";
+    case ScaleKind::kBehind:
+      return "behind";
+    case ScaleKind::kOwnClock:
+      break;
+  }
+  return "own_clock";
 }
 
 const char* follows_text(Follows follows) {
@@ -100,7 +161,7 @@ Table cameras_table(const Diagnosis& diagnosis) {
     const evaluation::StreamFacts& facts = camera.facts;
     const evaluation::Standing& standing = camera.standing;
     table.add({camera.camera, camera.host, camera.stream, count_text(facts.account.delivered),
-               decimals_text(1000 / facts.host_period_ms, 3), follows_text(standing.follows),
+               decimals_text(1000 / facts.host_period.period_ms, 3), follows_text(standing.follows),
                number_text(standing.rate_ppm), number_text(standing.moves_ms_per_minute),
                number_text(standing.phase_ms), number_text(facts.interval_jitter_ms),
                count_text(facts.account.lost), count_text(facts.account.never_exposed),
@@ -135,6 +196,8 @@ Json verdict_json(const GroupVerdict& verdict) {
           {"status", status_name(verdict.status)},
           {"reason", verdict.reason},
           {"period_ms", verdict.period_ms},
+          {"by_stamps", verdict.by_stamps},
+          {"spread_ms", verdict.spread_ms},
           {"resolution_ppm", verdict.resolution_ppm}};
 }
 
@@ -145,12 +208,16 @@ Json camera_json(const CameraDiagnosis& camera) {
   for (const evaluation::StampJump& jump : facts.jumps) {
     jumps.push_back({{"at_s", jump.at_s}, {"step_ms", jump.step_ms}, {"periods", jump.periods}});
   }
+  Json segments = Json::array();
+  for (const evaluation::PhaseSegment& segment : standing.segments) {
+    segments.push_back({{"from_s", segment.from_s}, {"phase_ms", segment.phase_ms}});
+  }
   return {{"camera", camera.camera},
           {"host", camera.host},
           {"stream", camera.stream},
           {"frames", facts.account.delivered},
           {"span_s", facts.span_s()},
-          {"rate_hz", 1000 / facts.host_period_ms},
+          {"rate_hz", 1000 / facts.host_period.period_ms},
           {"period_ms", facts.period_ms},
           {"follows", follows_name(standing.follows)},
           {"period_multiple", standing.period_multiple},
@@ -158,6 +225,14 @@ Json camera_json(const CameraDiagnosis& camera) {
           {"rate_sd_ppm", standing.rate_sd_ppm},
           {"moves_ms_per_minute", standing.moves_ms_per_minute},
           {"phase_ms", standing.phase_ms},
+          {"segments", segments},
+          {"scale", scale_name(camera.scale.kind)},
+          {"scale_shift_s", camera.scale.shift_s},
+          {"delay_ms", camera.scale.delay_ms},
+          {"delay_scatter_ms", facts.delay.scatter_ms},
+          {"stamped_on_arrival", facts.stamped_on_arrival},
+          {"exposure_ms", facts.columns.exposure_ms.middle},
+          {"missing_share", facts.missing_share()},
           {"interval_jitter_ms", facts.interval_jitter_ms},
           {"on_grid_share", facts.on_grid_share},
           {"lost_frames", facts.account.lost},
@@ -180,6 +255,10 @@ const char* sync_status_text(SyncStatus status) {
   switch (status) {
     case SyncStatus::kWorks:
       return "works";
+    case SyncStatus::kWorksWithOffset:
+      return "works, with a constant offset";
+    case SyncStatus::kSlips:
+      return "slips";
     case SyncStatus::kDoesNotWork:
       return "does not work";
     case SyncStatus::kCannotBeTold:
@@ -197,18 +276,22 @@ Document diagnose_document(const Diagnosis& diagnosis) {
         {.heading = "Streams of one camera against each other", .table = pairs_table(diagnosis)});
   }
   Block findings{.heading = "Findings"};
-  for (const Finding& finding : diagnosis.findings) findings.items.push_back(finding.text);
+  for (const Finding& finding : diagnosis.findings) {
+    findings.items.push_back(finding_text(finding));
+  }
   if (findings.items.empty()) findings.items = {"none"};
   blocks.push_back(std::move(findings));
+  for (Block& block : clock_account_blocks(diagnosis.clocks)) blocks.push_back(std::move(block));
   blocks.push_back({.heading = "What stamps alone cannot show", .items = diagnosis.cannot_know});
   blocks.push_back(
       {.heading = "How to read it",
-       .items = {"follows: the trigger, if its frame period in host time is that of the others; "
-                 "free-running cameras differ by tens of ppm. phase: of the arrivals, relative to "
-                 "the first camera that follows.",
-                 "intervals: deviation of the stamps from whole periods. lost: counted by the "
-                 "camera, never arrived. skipped: periods without a frame that its counter did not "
-                 "count."}});
+       .items = {
+           "follows: the trigger, if its frame period in host time is that of the others; "
+           "free-running cameras differ by tens of ppm. phase: of the arrivals (of the stamps, "
+           "where all are of one clock), relative to a camera that follows.",
+           "intervals: deviation of the stamps from whole periods. lost: counted by the "
+           "camera, never arrived. skipped: periods without a frame that its counter did not "
+           "count."}});
   return document;
 }
 
@@ -222,6 +305,7 @@ std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::str
                {"streams", Json::array()},
                {"cameras", Json::array()},
                {"pairs", Json::array()},
+               {"clocks", clock_account_json(diagnosis.clocks)},
                {"findings", Json::array()},
                {"cannot_know", diagnosis.cannot_know}};
   for (const GroupVerdict& group : diagnosis.groups) root["streams"].push_back(verdict_json(group));
@@ -241,7 +325,10 @@ std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::str
     root["findings"].push_back({{"camera", finding.camera},
                                 {"stream", finding.stream},
                                 {"kind", finding.kind},
-                                {"text", finding.text}});
+                                {"harm", harm_name(finding.harm)},
+                                {"certainty", certainty_name(finding.certainty)},
+                                {"text", finding.text},
+                                {"advice", finding.advice}});
   }
   // A file may name its cameras in bytes that are no UTF-8.
   return file_text(root);

@@ -32,8 +32,20 @@ std::string drop_text(const FitSide& side) {
 }
 
 std::string lines_text(const std::string& heading, const std::vector<std::string>& lines) {
+  if (lines.empty()) return {};
   std::string text = "\n" + heading + "\n";
   for (const std::string& line : lines) text += wrapped("- " + printable_name(line), 2);
+  return text;
+}
+
+std::string verdicts_text(const FitCheck& check) {
+  std::string text;
+  for (const evaluation::FitVerdict& verdict : check.verdicts) {
+    text +=
+        wrapped(fmt::format("{} {}",
+                            verdict.agrees ? "agrees: " : "DIFFERS:", printable_name(verdict.text)),
+                2);
+  }
   return text;
 }
 
@@ -56,9 +68,10 @@ std::string fit_check_text(const std::string& heading, const FitCheck& check,
                estimate_text(simulated.skew_ppm[i])});
   }
   return fmt::format(
-      "\n{}\n\n{}\nKolmogorov-Smirnov distance {:.4f}; two samples of one distribution exceed "
-      "{:.4f} in 5 % of all cases.\n",
-      heading, plain(table), check.ks, check.ks_limit);
+      "\n{}\n\n{}\nKolmogorov-Smirnov distance {:.4f} but for a constant; two samples of one "
+      "distribution "
+      "exceed {:.4f} in 5 % of all cases at most.\n{}",
+      heading, plain(table), check.ks, check.ks_limit, verdicts_text(check));
 }
 
 constexpr const char* kFitLegend = R"(
@@ -66,11 +79,16 @@ How to read it
   excess delay: the delay of a frame over the quickest frames of its stream.
   +- is a standard error, [..] a 95 % interval. Drift: device rate / host rate - 1.
   Hold-out: fitted to the first half of each stream, compared with the second half.
+  agrees, DIFFERS: 5 % of good models differ in their delays, 5 % in anything else.
 )";
 
 Json fitted_json(const std::optional<FittedValue>& estimate) {
   if (!estimate) return nullptr;
-  return {{"value", estimate->value}, {"error", estimate->error}};
+  const evaluation::Interval interval = evaluation::interval_of(*estimate);
+  return {{"value", estimate->value},
+          {"error", estimate->error},
+          {"low", interval.low},
+          {"high", interval.high}};
 }
 
 Json share_json(const FitSide& side) {
@@ -96,10 +114,16 @@ Json fit_check_json(const char* name, const FitCheck& check,
                      {"recorded", fitted_json(recorded.skew_ppm[i])},
                      {"simulated", fitted_json(simulated.skew_ppm[i])}});
   }
+  Json verdicts = Json::array();
+  for (const evaluation::FitVerdict& verdict : check.verdicts) {
+    verdicts.push_back(
+        {{"what", verdict.what}, {"agrees", verdict.agrees}, {"text", verdict.text}});
+  }
   return {
       {"check", name},
       {"ks", check.ks},
       {"ks_limit", check.ks_limit},
+      {"verdicts", verdicts},
       {"excess_ms", quantiles},
       {"skew_ppm", skews},
       {"correlation",
@@ -117,14 +141,17 @@ std::string fit_table(const FitReport& report) {
                                  report.base, report.model)) +
       "\n";
   if (!report.capture.empty()) text += fmt::format("capture: {}\n", printable_name(report.capture));
+  const evaluation::FitTrust& trust = report.study.trust;
+  text += "\n" + wrapped(printable_name(trust.text), 0);
   text += lines_text("Fitted", report.study.model.evidence);
   text += lines_text("Not identified", report.study.model.not_identified);
+  text += lines_text("Left out of the model", report.study.model.left_out);
   text += fit_check_text("Recording and simulated model", report.study.whole, report.cameras);
   if (report.study.hold_out) {
     text += fit_check_text("Hold-out: second half, and the simulated model of the first half",
                            *report.study.hold_out, report.cameras);
   } else {
-    text += fmt::format("\nNo hold-out: it needs {} frames of each stream.\n",
+    text += fmt::format("\nNo hold-out: it needs {} frames of a stream.\n",
                         2 * evaluation::kFewestFrames);
   }
   return text + kFitLegend;
@@ -135,16 +162,22 @@ std::string fit_json(const FitReport& report) {
   if (report.study.hold_out) {
     checks.push_back(fit_check_json("hold_out", *report.study.hold_out, report.cameras));
   }
-  const Json root = {{"schema_version", 1},
-                     {"version", version()},
-                     {"commit", commit()},
-                     {"inputs", report.inputs},
-                     {"capture", report.capture.empty() ? Json(nullptr) : Json(report.capture)},
-                     {"base", report.base},
-                     {"model", report.model},
-                     {"evidence", report.study.model.evidence},
-                     {"not_identified", report.study.model.not_identified},
-                     {"checks", checks}};
+  const Json root = {
+      {"schema_version", 1},
+      {"version", version()},
+      {"commit", commit()},
+      {"inputs", report.inputs},
+      {"capture", report.capture.empty() ? Json(nullptr) : Json(report.capture)},
+      {"base", report.base},
+      {"model", report.model},
+      {"trust",
+       {{"holds", report.study.trust.holds ? Json(*report.study.trust.holds) : Json(nullptr)},
+        {"held_out", report.study.trust.held_out},
+        {"text", report.study.trust.text}}},
+      {"evidence", report.study.model.evidence},
+      {"not_identified", report.study.model.not_identified},
+      {"left_out", report.study.model.left_out},
+      {"checks", checks}};
   return file_text(root);
 }
 

@@ -1,11 +1,15 @@
-// A fit to a recording as text or JSON: the fitted values with their evidence, and the agreement of
-// the simulated model with the recording.
+// A fit to a recording as text or JSON: whether to trust it, the fitted values with their evidence,
+// what was left out, and the agreement of the simulated model with the recording.
 //
-// JSON: {"schema_version", "version", "commit", "inputs", "capture", "base", "model", "evidence":
-// [text], "not_identified": [text], "checks": [{"check": "whole" | "hold_out", "ks", "ks_limit",
-// "excess_ms": [{"probability", "recorded", "simulated"}], "skew_ppm": [{"camera", "recorded":
-// {"value", "error"}, "simulated"}], "correlation": {"recorded", "simulated"}, "drop_share":
-// {"recorded", "simulated"}, "frames": {"recorded", "simulated"}}]}; what does not exist is null.
+// JSON: {"schema_version", "version", "commit", "inputs", "capture", "base", "model", "trust":
+// {"holds": the model predicts, false: something speaks against it, "held_out": a half was held
+// back, "text"}, "evidence": [text], "not_identified": [text], "left_out": [text], "checks":
+// [{"check": "whole" | "hold_out", "ks", "ks_limit", "verdicts": [{"what": "delays" | "correlation"
+// | "drift" | "losses", "agrees", "text"}], "excess_ms": [{"probability", "recorded",
+// "simulated"}], "skew_ppm": [{"camera", "recorded": {"value", "error": standard error, "low",
+// "high": of the 95 % interval}, "simulated"}], "correlation": {"recorded", "simulated"},
+// "drop_share": {"recorded": {"value", "low", "high"}, "simulated"}, "frames": {"recorded",
+// "simulated"}}]}; what does not exist is null.
 #pragma once
 
 #include <string>

@@ -135,7 +135,10 @@ TEST(Diagnose, OneColumnForBothStampsIsOneClock) {
   }
   const Diagnosis found = diagnose(streams, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kWorks);
-  EXPECT_EQ(found.verdict.reason, "all 2 cameras have one frame period, to 0.02 ppm");
+  EXPECT_EQ(
+      found.verdict.reason,
+      "all 2 cameras have one frame period, to 0.02 ppm, and their stamps are within 0.001 ms "
+      "of each other");
   EXPECT_EQ(found.verdict.resolution_ppm, 0.02);
   EXPECT_THAT(kinds(found), ElementsAre("a one_clock", "b one_clock"));
   EXPECT_THAT(found.cannot_know,
@@ -196,7 +199,7 @@ TEST(Diagnose, FindsAPeriodSlip) {
   ASSERT_EQ(found.cameras[2].facts.jumps.size(), 1U);
   EXPECT_EQ(found.cameras[2].facts.jumps[0].periods, -1);
   EXPECT_NEAR(found.cameras[2].facts.jumps[0].step_ms, -kPeriodMs, 0.3);
-  EXPECT_NEAR(found.cameras[2].facts.jumps[0].at_s, (1000 - 150) * kPeriodMs * 1e-3, 0.1);
+  EXPECT_NEAR(found.cameras[2].facts.jumps[0].at_s, 1000 * kPeriodMs * 1e-3, 0.1);
   EXPECT_THAT(kinds(found), Contains("c period_slip"));
   EXPECT_EQ(found.verdict.status, SyncStatus::kWorks) << "it is on the trigger before and after";
 }
@@ -258,7 +261,7 @@ TEST(Diagnose, FindsWhatStallsStartsLateAndEndsEarly) {
   auto& early = streams[2].frames;
   early.resize(early.size() - 300);
   EXPECT_THAT(kinds(diagnose(streams, {})),
-              ElementsAre("a lost_frames", "a stalled", "b late_start", "c ended_early"));
+              ElementsAre("a lost_frames", "a stalled", "c ended_early", "b late_start"));
 }
 
 TEST(Diagnose, HostsWhoseClocksDifferCannotBeToldFromTriggers) {
@@ -279,8 +282,8 @@ TEST(Diagnose, AHostIsReportedThoughItsFirstCameraHasTooFewFrames) {
   streams.push_back(record({.name = "e", .host = "other", .host_ppm = 20}));
   streams.push_back(record({.name = "f", .host = "other", .host_ppm = 20}));
   const Diagnosis found = diagnose(streams, {});
-  EXPECT_THAT(kinds(found), ElementsAre("d too_few_frames", "e host_or_free_running"));
-  EXPECT_THAT(found.findings.back().text, HasSubstr("host other (Depth 0 of cameras e, f)"));
+  EXPECT_THAT(kinds(found), ElementsAre("e host_or_free_running", "d too_few_frames"));
+  EXPECT_THAT(found.findings.front().text, HasSubstr("host other (Depth 0 of cameras e, f)"));
 }
 
 TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsFound) {
@@ -336,6 +339,7 @@ TEST(Diagnose, OneCameraAloneCannotShowATrigger) {
 TEST(Diagnose, DoubtfulStampsAreSaid) {
   std::vector<RecordedStream> streams = rig();
   EXPECT_THAT(kinds(diagnose(streams, {})), Not(Contains(HasSubstr("global_time"))));
+  streams[0].realsense = true;
   for (StampedFrame& frame : streams[0].frames) frame.sensor += std::chrono::seconds(1'700'000'000);
   for (StampedFrame& frame : streams[1].frames) frame.sensor /= 1000;  // seconds, not milliseconds
   for (std::size_t i = 400; i < streams[2].frames.size(); ++i) {
@@ -361,7 +365,7 @@ TEST(Diagnose, TooFewOrDamagedFramesAreSaid) {
   EXPECT_THAT(kinds(found), Contains("c backward_stamps"));
   EXPECT_THAT(kinds(found), Contains("c counter_restarts"));
   EXPECT_EQ(found.cameras[2].facts.backward_stamps, 4);
-  EXPECT_THAT(found.cameras[1].facts.host_period_ms, IsNan());
+  EXPECT_THAT(found.cameras[1].facts.host_period.period_ms, IsNan());
   EXPECT_EQ(diagnose({}, {}).verdict.status, SyncStatus::kCannotBeTold);
 }
 

@@ -12,7 +12,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
-using testing::ThrowsMessage;
 
 // Cameras on these hosts, frames every `period_ms`, each third 0.1 ms late.
 FitInput rig_of(const std::vector<std::uint32_t>& hosts, double period_ms = 1e3 / 30) {
@@ -100,9 +99,17 @@ TEST(FitModel, ADefaultBaseTakesTheRateOfTheCameras) {
   EXPECT_EQ(*default_base(rig_of({0}, 1e3 / 45)).mode_rate_hz, 90);
   const FitInput input = rig_of({0}, 1e3 / 30.21);
   EXPECT_NEAR(model_of(input, default_base(input)).scenario.trigger.rate_hz, 30.21, 1e-4);
-  EXPECT_THAT([] { default_base(rig_of({0}, 10)); },
-              ThrowsMessage<FitError>(HasSubstr("the cameras run at 100.000 Hz, allowed at most "
-                                                "45.918 Hz without --base")));
+  const FitInput fast = rig_of({0}, 10);
+  EXPECT_EQ(*default_base(fast).mode_rate_hz, 300);
+  EXPECT_EQ(default_base(fast).left_out, "");
+  EXPECT_NEAR(model_of(fast, default_base(fast)).scenario.trigger.rate_hz, 100, 1e-4);
+}
+
+TEST(FitModel, ARateBeyondAllCamerasIsModelledAtTheFastestAndSaid) {
+  const FitInput input = rig_of({0}, 5);
+  const FitModel model = model_of(input, default_base(input));
+  EXPECT_NEAR(model.scenario.trigger.rate_hz, 153.061, 1e-3);
+  EXPECT_THAT(model.left_out, Contains(HasSubstr("the cameras run at 200.000 Hz")));
 }
 
 TEST(FitModel, RoundTripsMakeATableAndTakeTheHostsCosts) {

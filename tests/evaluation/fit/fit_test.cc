@@ -14,6 +14,7 @@
 namespace simbench::evaluation {
 namespace {
 
+using testing::Contains;
 using testing::Each;
 using testing::HasSubstr;
 using testing::SizeIs;
@@ -60,10 +61,10 @@ TEST(Fit, GivesBackWhatWasSimulated) {
     ASSERT_THAT(fit.skew_ppm, SizeIs(3)) << "seed " << seed;
     for (std::size_t i = 0; i < 3; ++i) {
       // A register of whole microseconds, over 50 s.
-      EXPECT_NEAR(fit.skew_ppm[i].value, world.cameras.skew_of_camera_ppm[i],
-                  5 * fit.skew_ppm[i].error + 0.02)
+      EXPECT_NEAR(fit.skew_ppm[i].value().value, world.cameras.skew_of_camera_ppm[i],
+                  5 * fit.skew_ppm[i].value().error + 0.02)
           << "camera " << i << ", seed " << seed;
-      EXPECT_LT(fit.skew_ppm[i].error, 0.5) << "seed " << seed;
+      EXPECT_LT(fit.skew_ppm[i].value().error, 0.5) << "seed " << seed;
     }
     ASSERT_TRUE(fit.correlation) << "seed " << seed;
     EXPECT_NEAR(fit.correlation->value, 0.4, 5 * fit.correlation->error) << "seed " << seed;
@@ -89,9 +90,11 @@ TEST(Fit, TheSimulatedModelAgreesWithItsRecording) {
     EXPECT_LT(study.whole.ks, study.whole.ks_limit) << "seed " << seed;
     ASSERT_TRUE(study.hold_out) << "seed " << seed;
     EXPECT_LT(study.hold_out->ks, 1.5 * study.hold_out->ks_limit) << "seed " << seed;
+    EXPECT_TRUE(study.trust.held_out);
     for (std::size_t i = 0; i < 3; ++i) {
-      const FittedValue& found = study.whole.simulated.skew_ppm[i];
-      EXPECT_NEAR(found.value, study.whole.recorded.skew_ppm[i].value, 5 * found.error + 0.02)
+      const FittedValue& found = study.whole.simulated.skew_ppm[i].value();
+      EXPECT_NEAR(found.value, study.whole.recorded.skew_ppm[i].value().value,
+                  5 * found.error + 0.02)
           << "camera " << i << ", seed " << seed;
     }
     EXPECT_NEAR(study.whole.simulated.drops.value().share(),
@@ -105,10 +108,11 @@ TEST(Fit, TheCheckSeesAnotherDistribution) {
   const RigFit fit = fit_rig(recorded_world(known_world(), 31));
   scenarios::Scenario other = known_world();
   other.usb.delivery_quantiles_ms = exponential_table(0.4);
-  const FitCheck check = check_fit(fit, other, sim::make_simulation);
+  const FitCheck check = check_fit(fit, fit, other, {"a", "b", "c"}, sim::make_simulation);
   // The distance of Exp(0.3) and Exp(0.4) is (3/4)^3 - (3/4)^4 = 0.105.
   EXPECT_NEAR(check.ks, 0.105, 0.05);
   EXPECT_GT(check.ks, check.ks_limit);
+  EXPECT_FALSE(check.verdicts.front().agrees);
 }
 
 TEST(Fit, AFitOfAFitIsTheSame) {
@@ -129,7 +133,8 @@ TEST(Fit, AFitOfAFitIsTheSame) {
   EXPECT_NEAR(last.correlation->value, first.correlation->value,
               5 * std::sqrt(3) * first.correlation->error);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(last.skew_ppm[i].value, first.skew_ppm[i].value, 0.5) << "camera " << i;
+    EXPECT_NEAR(last.skew_ppm[i].value().value, first.skew_ppm[i].value().value, 0.5)
+        << "camera " << i;
   }
 }
 
@@ -163,8 +168,13 @@ TEST(FitInput, ACameraWithoutFramesIsNamed) {
     sink.on_frame(frame, nullptr);
   }
   const FitInput input = sink.take();
-  EXPECT_THAT([&] { fit_rig(input); },
-              ThrowsMessage<FitError>("camera right: found no frames, a fit needs 100 at least"));
+  const RigFit fit = fit_rig(input);
+  EXPECT_TRUE(fit.skew_ppm[0]);
+  EXPECT_FALSE(fit.skew_ppm[1]);
+  const FitModel model = fit_model(fit, input, base_of("3cam_1host_30fps"), "model.json");
+  EXPECT_THAT(model.not_identified, Contains("the rate of camera right: the mean of the others"));
+  EXPECT_EQ(model.scenario.cameras.skew_of_camera_ppm[0],
+            model.scenario.cameras.skew_of_camera_ppm[1]);
 }
 
 TEST(FitInput, StampsOfAnotherClockAreRefused) {

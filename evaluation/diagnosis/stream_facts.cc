@@ -1,3 +1,5 @@
+#include "evaluation/diagnosis/stream_facts.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -8,20 +10,20 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/frames/camera_statistics.h"
-#include "evaluation/frames/frame_account.h"
-#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
 
 constexpr Nanoseconds kWarmUp = std::chrono::seconds(5);
 constexpr Nanoseconds kLongRecording = std::chrono::seconds(20);
-constexpr double kOnGrid = 0.1;             // of a period
 constexpr std::ptrdiff_t kJumpWindow = 15;  // frames on either side
 constexpr std::ptrdiff_t kLeastJumpWindow = 5;
-constexpr double kWholePeriod = 0.15;  // how far from a whole number of periods a slip may be
+// How far from a whole number of periods a slip may be: within what two medians of a window
+// scatter, three standard deviations of their difference, and these bounds.
+constexpr double kLeastWhole = 0.03;
+constexpr double kMostWhole = 0.15;
+constexpr double kWindowScatters = 1.4;
 constexpr double kMostPeriods = 1000;
 constexpr double kPassingS = 5;  // a step that is undone sooner is lateness
 constexpr double kLeastFutureMs = 5;
@@ -53,6 +55,11 @@ std::span<const StampedFrame> without_warm_up(std::span<const StampedFrame> fram
   return frames.subspan(static_cast<std::size_t>(first - frames.begin()));
 }
 
+// After the stream's first arrival, also where the first frames are left out.
+double arrival_s(std::span<const StampedFrame> frames, std::size_t i, const StreamFacts& facts) {
+  return to_seconds(frames[i].arrival) - facts.first_arrival_s;
+}
+
 double interval_ms(std::span<const StampedFrame> frames, std::size_t i) {
   return difference_ms(frames[i].sensor.count(), frames[i - 1].sensor.count());
 }
@@ -82,33 +89,45 @@ void note_drift(std::span<const StampedFrame> frames, StreamFacts& facts) {
   facts.drift_ppm = (host_ms / device_ms - 1) * 1e6;
 }
 
-// The period of each frame, and the deviations of the intervals from whole periods.
-void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
-  facts.periods.assign(1, 0);
-  std::vector<double> deviations;
-  std::int64_t on_grid = 0;
+void note_grid(std::span<const StampedFrame> frames, const StampGrid& grid, StreamFacts& facts) {
+  facts.period_ms = grid.period_ms;
+  facts.interval_jitter_ms = grid.interval_jitter_ms;
+  facts.scatter_ms = grid.scatter_ms;
+  facts.on_grid_share = grid.on_grid_share;
+  facts.periods = grid.points;
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    const double interval = interval_ms(frames, i);
-    const double whole = std::round(interval / facts.period_ms);
-    const double deviation = interval - whole * facts.period_ms;
-    facts.periods.push_back(facts.periods.back() + std::llround(whole));
-    deviations.push_back(deviation);
-    if (interval < 0) ++facts.backward_stamps;
+    if (interval_ms(frames, i) < 0) ++facts.backward_stamps;
     if (frames[i].sensor == frames[i - 1].sensor) ++facts.repeated_stamps;
-    if (whole > 0 && std::abs(deviation) < kOnGrid * facts.period_ms) ++on_grid;
   }
-  facts.interval_jitter_ms = standard_deviation(deviations);
-  facts.on_grid_share = static_cast<double>(on_grid) / static_cast<double>(deviations.size());
+  facts.first_stamp = frames.front().sensor;
+  facts.stamps_ms.reserve(frames.size());
+  for (const StampedFrame& frame : frames) {
+    facts.stamps_ms.push_back(difference_ms(frame.sensor.count(), facts.first_stamp.count()));
+  }
 }
 
 double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::ptrdiff_t end) {
   return median(std::vector<double>(values.begin() + begin, values.begin() + end));
 }
 
+// The scatter of one value, by the differences of neighbours, to which no drift and no jump
+// matters.
+double scatter_of(const std::vector<double>& values) {
+  constexpr double kOfDifference = 1.4826 / 1.4142;
+  std::vector<double> sizes;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    sizes.push_back(std::abs(values[i] - values[i - 1]));
+  }
+  return sizes.empty() ? 0 : kOfDifference * median(std::move(sizes));
+}
+
 // Steps of `offsets` (arrival - sensor stamp) that hold on for some frames.
 std::vector<StampJump> find_jumps(std::span<const StampedFrame> frames,
-                                  const std::vector<double>& offsets, double period_ms) {
+                                  const std::vector<double>& offsets, const StreamFacts& facts) {
+  const double period_ms = facts.period_ms;
   const auto size = static_cast<std::ptrdiff_t>(offsets.size());
+  const double tolerance =
+      std::clamp(kWindowScatters * scatter_of(offsets) / period_ms, kLeastWhole, kMostWhole);
   std::vector<StampJump> jumps;
   std::ptrdiff_t settled = 0;  // no jump before this frame
   for (std::ptrdiff_t i = 0; i < size; ++i) {
@@ -121,13 +140,12 @@ std::vector<StampJump> find_jumps(std::span<const StampedFrame> frames,
     const double step = median_of(offsets, i, i + after) - median_of(offsets, i - before, i);
     if (std::abs(step) <= period_ms / 2) continue;
     const double periods = step / period_ms;
-    const bool whole = std::abs(periods - std::round(periods)) < kWholePeriod;
+    const bool whole = std::abs(periods - std::round(periods)) < tolerance;
     const bool few = std::abs(periods) < kMostPeriods;
-    jumps.push_back(
-        {.frame = at,
-         .at_s = difference_ms(frames[at].arrival.count(), frames.front().arrival.count()) * 1e-3,
-         .step_ms = step,
-         .periods = whole && few ? static_cast<int>(std::round(periods)) : 0});
+    jumps.push_back({.frame = at,
+                     .at_s = arrival_s(frames, at, facts),
+                     .step_ms = step,
+                     .periods = whole && few ? static_cast<int>(std::round(periods)) : 0});
     settled = i;
   }
   return jumps;
@@ -152,7 +170,7 @@ void drop_passing(std::vector<StampJump>& jumps, double period_ms) {
 // Notes lasting jumps and removes them from the arrivals.
 void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
                 StreamFacts& facts) {
-  facts.jumps = find_jumps(frames, offsets, facts.period_ms);
+  facts.jumps = find_jumps(frames, offsets, facts);
   drop_passing(facts.jumps, facts.period_ms);
   double taken_out = 0;
   std::size_t next = 0;
@@ -171,9 +189,6 @@ void note_bursts(std::span<const StampedFrame> frames, const std::vector<double>
   const double high = quantile(offsets, 0.9);
   const double limit =
       usual + std::max({kLeastBurstMs, facts.period_ms / 4, kBurstSpreads * (high - usual)});
-  const auto since_start_s = [&frames](std::size_t i) {
-    return difference_ms(frames[i].arrival.count(), frames.front().arrival.count()) * 1e-3;
-  };
   DelayBurst burst;
   std::int64_t all_late = 0;
   std::vector<DelayBurst> bursts;
@@ -184,7 +199,7 @@ void note_bursts(std::span<const StampedFrame> frames, const std::vector<double>
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     if (offsets[i] <= limit) continue;
     ++all_late;
-    const double at_s = since_start_s(i);
+    const double at_s = arrival_s(frames, i, facts);
     if (burst.late > 0 && at_s - (burst.at_s + burst.for_s) > kBurstPauseS) end_burst();
     if (burst.late++ == 0) burst.at_s = at_s;
     burst.for_s = at_s - burst.at_s;
@@ -195,22 +210,28 @@ void note_bursts(std::span<const StampedFrame> frames, const std::vector<double>
   if (rare) facts.bursts = std::move(bursts);
 }
 
-// Offsets of arrivals from stamps, less their drift: those that lie below nearly all others are
-// stamps of the future, those far above are late frames.
-void note_delays(std::span<const StampedFrame> frames, StreamFacts& facts) {
-  const auto size = static_cast<std::ptrdiff_t>(frames.size());
-  if (size < 2 * kJumpWindow) return;
-  std::vector<double> offsets(frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    offsets[i] = facts.arrivals_ms[i] -
-                 difference_ms(frames[i].sensor.count(), frames.front().sensor.count());
+// Arrivals less stamps, jumps and drift taken out.
+std::vector<double> level_offsets(const StreamFacts& facts) {
+  const auto size = static_cast<std::ptrdiff_t>(facts.arrivals_ms.size());
+  std::vector<double> offsets(facts.arrivals_ms.size());
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    offsets[i] = facts.arrivals_ms[i] - facts.stamps_ms[i];
   }
+  if (size < 2 * kJumpWindow) return offsets;
   const std::ptrdiff_t tenth = std::max(kLeastJumpWindow, size / 10);
   const double change = median_of(offsets, size - tenth, size) - median_of(offsets, 0, tenth);
   const double per_frame = change / static_cast<double>(size - tenth);
   for (std::ptrdiff_t i = 0; i < size; ++i) {
     offsets[static_cast<std::size_t>(i)] -= per_frame * static_cast<double>(i);
   }
+  return offsets;
+}
+
+// Those far below nearly all others are stamps of the future, those far above are late frames.
+void note_delays(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
+                 StreamFacts& facts) {
+  if (offsets.size() < 2 * kJumpWindow) return;
+  facts.delay.scatter_ms = (quantile(offsets, 0.84) - quantile(offsets, 0.16)) / 2;
   const double lowest = quantile(offsets, 0.01);
   const double limit = lowest - std::max(kLeastFutureMs, facts.period_ms / 4);
   for (const double offset : offsets) {
@@ -227,7 +248,57 @@ void note_least_delay(std::span<const StampedFrame> frames, StreamFacts& facts) 
   for (const StampedFrame& frame : frames) {
     delays.push_back(difference_ms(frame.arrival.count(), frame.sensor.count()));
   }
-  facts.least_delay_ms = quantile(std::move(delays), 0.01);
+  facts.delay.median_ms = median(delays);
+  facts.delay.least_ms = quantile(std::move(delays), 0.01);
+}
+
+// How much of an interval's deviation the next one takes back: -0.5 for jitter about a grid, 0 for
+// intervals that vary by themselves.
+double correlation_of_intervals(const StreamFacts& facts) {
+  double product = 0;
+  double square = 0;
+  double before = 0;
+  for (std::size_t i = 1; i < facts.stamps_ms.size(); ++i) {
+    const auto points = static_cast<double>(facts.periods[i] - facts.periods[i - 1]);
+    const double deviation = facts.stamps_ms[i] - facts.stamps_ms[i - 1] - points * facts.period_ms;
+    product += before * deviation;
+    square += deviation * deviation;
+    before = deviation;
+  }
+  return square > 0 ? product / square : 0;
+}
+
+bool is_stamped_on_arrival(const StreamFacts& facts) {
+  constexpr double kTakenBack = -0.25;
+  return !facts.one_clock && facts.scatter_ms > kSteadyShare * facts.period_ms &&
+         facts.delay.scatter_ms < kFollowsShare * facts.scatter_ms &&
+         correlation_of_intervals(facts) < kTakenBack;
+}
+
+// Frames of one batch arrive together, though their stamps are a period apart.
+double batched_share(const StreamFacts& facts) {
+  constexpr double kTogether = 0.1;  // of a period
+  if (facts.arrivals_ms.size() < 2 || facts.one_clock) return kNan;
+  std::size_t together = 0;
+  for (std::size_t i = 1; i < facts.arrivals_ms.size(); ++i) {
+    const double apart = facts.arrivals_ms[i] - facts.arrivals_ms[i - 1];
+    if (facts.periods[i] > facts.periods[i - 1] && apart < kTogether * facts.period_ms) ++together;
+  }
+  return static_cast<double>(together) / static_cast<double>(facts.arrivals_ms.size() - 1);
+}
+
+// A move of the stamps alone is a jump.
+void note_steps(std::span<const StampedFrame> frames, const StampGrid& grid, StreamFacts& facts) {
+  constexpr std::size_t kNear = 2;  // frames
+  for (const GridStep& step : grid.steps) {
+    const bool is_jump = std::ranges::any_of(facts.jumps, [&step](const StampJump& jump) {
+      return jump.frame <= step.frame + kNear && step.frame <= jump.frame + kNear;
+    });
+    if (is_jump) continue;
+    facts.steps.push_back({.frame = step.frame,
+                           .at_s = arrival_s(frames, step.frame, facts),
+                           .step_ms = step.step_ms});
+  }
 }
 
 // Medians of batches of frames, which a late frame hardly moves, between jumps. Each stretch
@@ -238,7 +309,8 @@ struct Batches {
   std::size_t stretches = 0;
 };
 
-void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, Batches& batches) {
+void add_stretch(const StreamFacts& facts, const std::vector<double>& times_ms, std::size_t begin,
+                 std::size_t end, Batches& batches) {
   const std::size_t all = facts.periods.size() >= kManyFrames ? kBatches : kFewBatches;
   const std::size_t share = std::max<std::size_t>(2, all * (end - begin) / facts.periods.size());
   const std::size_t count = std::min(share, (end - begin) / kLeastBatchFrames);
@@ -251,8 +323,8 @@ void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, B
     std::vector<double> periods;
     std::vector<double> offsets;
     for (std::size_t i = first; i < last; ++i) {
-      periods.push_back(static_cast<double>(facts.periods[i]));
-      offsets.push_back(facts.arrivals_ms[i] - periods.back() * facts.period_ms);
+      periods.push_back(static_cast<double>(facts.periods[i] - facts.periods[begin]));
+      offsets.push_back(times_ms[i] - times_ms[begin] - periods.back() * facts.period_ms);
     }
     x.push_back(mean_of(periods));
     y.push_back(median(std::move(offsets)));
@@ -266,17 +338,26 @@ void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, B
   ++batches.stretches;
 }
 
-// The period in host time: a line through the batches. Their scatter about it gives its
+// The first frames of the stretches between jumps and steps, and the end.
+std::vector<std::size_t> stretches_of(const StreamFacts& facts) {
+  std::vector<std::size_t> begins = {0, facts.periods.size()};
+  for (const StampJump& jump : facts.jumps) begins.push_back(jump.frame);
+  for (const PhaseStep& step : facts.steps) begins.push_back(step.frame);
+  std::ranges::sort(begins);
+  return begins;
+}
+
+// The grid's period by another clock: a line through the batches. Their scatter about it gives its
 // uncertainty, also where lateness lasts for many frames.
-void note_host_period(StreamFacts& facts) {
+PeriodEstimate period_by(const StreamFacts& facts, const std::vector<double>& times_ms) {
   Batches batches;
-  std::size_t begin = 0;
-  for (const StampJump& jump : facts.jumps) {
-    add_stretch(facts, begin, jump.frame, batches);
-    begin = jump.frame;
+  const std::vector<std::size_t> begins = stretches_of(facts);
+  for (std::size_t i = 1; i < begins.size(); ++i) {
+    if (begins[i] > begins[i - 1]) {
+      add_stretch(facts, times_ms, begins[i - 1], begins[i], batches);
+    }
   }
-  add_stretch(facts, begin, facts.periods.size(), batches);
-  if (batches.x.size() < kFewBatches || batches.x.size() < 2 * batches.stretches + 2) return;
+  if (batches.x.size() < kFewBatches || batches.x.size() < 2 * batches.stretches + 2) return {};
   const FittedLine line = fit_line(batches.x, batches.y);
   double scatter = 0;
   double width = 0;
@@ -288,94 +369,64 @@ void note_host_period(StreamFacts& facts) {
   const auto freedom = static_cast<double>(batches.x.size() - batches.stretches - 1);
   const double period_ms = facts.period_ms + line.slope;
   const double sd_ppm = std::sqrt(scatter / freedom / width) / period_ms * 1e6;
-  if (!(period_ms > 0) || !std::isfinite(sd_ppm)) return;
-  facts.host_period_ms = period_ms;
-  facts.host_period_sd_ppm = sd_ppm;
+  if (!(period_ms > 0) || !std::isfinite(sd_ppm)) return {};
+  return {.period_ms = period_ms, .sd_ppm = sd_ppm, .freedom = freedom};
 }
 
-constexpr double kMovesShare = 0.25;    // of a period; more is no jitter
-constexpr double kMovesDeviations = 4;  // of the offsets
-
-// The first stream's register may have wrapped before the second stream began.
-std::int64_t register_difference(const StampedFrame& a, const StampedFrame& b) {
-  const std::int64_t difference = (a.sensor - b.sensor).count();
-  const double wraps =
-      std::round(static_cast<double>(difference) / static_cast<double>(kDeviceRegisterNs));
-  return difference - static_cast<std::int64_t>(wraps) * kDeviceRegisterNs;
+// The columns of the last frames.
+FrameColumns columns_of(FrameColumns columns, std::size_t frames) {
+  columns.for_each([frames](std::vector<double>& column) {
+    if (column.empty()) return;
+    column.erase(column.begin(), column.end() - static_cast<std::ptrdiff_t>(frames));
+  });
+  return columns;
 }
 
 }  // namespace
 
-StreamFacts stream_facts(const RecordedStream& stream) {
+StreamFacts stream_facts(const RecordedStream& stream, std::optional<double> other_period_ms) {
   const std::span<const StampedFrame> recorded = stream.frames;
   StreamFacts facts;
   facts.counted = stream.counted;
   facts.stamped_by_host = stream.stamped_by_host;
+  facts.realsense = stream.realsense;
   if (recorded.empty()) return facts;
   facts.wraps = count_wraps(recorded);
   facts.global_time = counts_from_1970(recorded);
   facts.one_clock = has_one_clock(recorded);
   note_arrivals(recorded, facts);
+  note_least_delay(recorded, facts);
   const std::vector<StampedFrame> all = unwrapped(recorded);
-  facts.account = frame_account(all, stream.counted);
+  facts.account = {.delivered = static_cast<std::int64_t>(all.size())};
+  if (const auto grid = stamp_grid(all, other_period_ms)) {
+    facts.account = frame_account(all, stream.counted, *grid);
+    facts.losses = loss_places(all, frame_gaps(all, stream.counted, *grid));
+  }
   const std::span<const StampedFrame> frames = without_warm_up(all);
-  const std::optional<double> period_ms = stream_period_ms(frames);
-  if (!period_ms) return facts;
-  facts.period_ms = *period_ms;
-  note_intervals(frames, facts);
+  const std::optional<StampGrid> grid = stamp_grid(frames, other_period_ms);
+  if (!grid) return facts;
+  note_grid(frames, *grid, facts);
+  facts.rate_changes = rate_changes(frames, *grid);
+  const double left_out_s = to_seconds(frames.front().arrival) - facts.first_arrival_s;
+  for (RateChange& change : facts.rate_changes) change.at_s += left_out_s;
 
   std::vector<double> offsets;
-  for (const StampedFrame& frame : frames) {
-    facts.arrivals_ms.push_back(difference_ms(frame.arrival.count(), 0));
-    offsets.push_back(difference_ms(frame.arrival.count(), frames.front().arrival.count()) -
-                      difference_ms(frame.sensor.count(), frames.front().sensor.count()));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    facts.arrivals_ms.push_back(difference_ms(frames[i].arrival.count(), 0));
+    offsets.push_back(difference_ms(frames[i].arrival.count(), frames.front().arrival.count()) -
+                      facts.stamps_ms[i]);
   }
   note_jumps(frames, offsets, facts);
+  note_steps(frames, *grid, facts);
   note_drift(frames, facts);
-  note_delays(frames, facts);
-  if (facts.stamped_by_host) note_least_delay(frames, facts);
-  note_host_period(facts);
+  const std::vector<double> level = level_offsets(facts);
+  note_delays(frames, level, facts);
+  facts.stamped_on_arrival = is_stamped_on_arrival(facts);
+  facts.batched_share = batched_share(facts);
+  facts.stamp_period = period_by(facts, facts.stamps_ms);
+  facts.host_period = period_by(facts, facts.arrivals_ms);
+  facts.columns = column_facts(columns_of(stream.columns, frames.size()), frames, level);
   return facts;
-}
-
-PairDiagnosis compare_streams(std::span<const StampedFrame> recorded,
-                              std::span<const StampedFrame> recorded_against) {
-  PairDiagnosis pair;
-  if (recorded.size() < 2 || recorded_against.size() < 2) return pair;
-  const std::vector<StampedFrame> frames = unwrapped(recorded);
-  const std::vector<StampedFrame> against = unwrapped(recorded_against);
-  const double period_ms = to_ms(median_period(against));
-  if (!(period_ms > 0)) return pair;
-
-  std::vector<double> minutes;
-  std::vector<double> offsets;
-  std::size_t nearest = 0;
-  for (const StampedFrame& frame : frames) {
-    const auto distance = [&](std::size_t i) {
-      return std::abs(register_difference(frame, against[i]));
-    };
-    while (nearest + 1 < against.size() && distance(nearest + 1) <= distance(nearest)) ++nearest;
-    double offset = static_cast<double>(register_difference(frame, against[nearest])) * 1e-6;
-    if (std::abs(offset) > period_ms) continue;  // lost frames
-    if (!offsets.empty()) {
-      offset = offsets.back() + std::remainder(offset - offsets.back(), period_ms);
-    }
-    offsets.push_back(offset);
-    minutes.push_back(difference_ms(frame.sensor.count(), frames.front().sensor.count()) / 60'000);
-  }
-  if (offsets.size() < 2) return pair;
-  const FittedLine line = fit_line(minutes, offsets);
-  std::vector<double> deviations;
-  for (std::size_t i = 0; i < offsets.size(); ++i) {
-    deviations.push_back(offsets[i] - line.at(minutes[i]));
-  }
-  const double moved_ms = std::abs(line.slope) * (minutes.back() - minutes.front());
-  pair.offset_ms = std::remainder(mean_of(offsets), period_ms);
-  pair.spread_ms = standard_deviation(deviations);
-  pair.moves_ms_per_minute = line.slope;
-  pair.runs_free =
-      moved_ms > kMovesShare * period_ms && moved_ms > kMovesDeviations * pair.spread_ms;
-  return pair;
 }
 
 }  // namespace simbench::evaluation
