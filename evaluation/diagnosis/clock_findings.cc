@@ -396,6 +396,7 @@ class ClockTeller {
     std::ranges::copy_if(clock.changes, std::back_inserter(away),
                          [](const LoggedChange& change) { return !change.is_slew && change.away; });
     std::vector<double> sizes;
+    sizes.reserve(away.size());
     for (const LoggedChange& step : away) sizes.push_back(step.by_s);
     const double usual_s = median(std::move(sizes));
     std::vector<LoggedChange> equal;
@@ -445,6 +446,7 @@ class ClockTeller {
     }
     const auto cameras = [](const std::vector<const ClockExplanation*>& all) {
       std::vector<std::string> found;
+      found.reserve(all.size());
       for (const ClockExplanation* one : all) found.push_back(one->camera);
       return cameras_named(found);
     };

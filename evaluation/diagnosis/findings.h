@@ -23,7 +23,7 @@ class CameraFindings {
       : diagnosis(all), camera(of), list_(list) {}
 
   struct Kind {
-    const char* name;
+    const char* name = "";
     Harm harm = Harm::kMinor;
     FindingCertainty certainty = FindingCertainty::kCertain;
     bool in_verdict = false;

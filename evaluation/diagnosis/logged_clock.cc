@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "evaluation/stability/log_entry.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -81,6 +84,25 @@ std::pair<std::size_t, std::size_t> one_boot(const ClockLog& log, const TimeRang
   return best;
 }
 
+// When the boot was that each point counts from, if all have one and arrivals count from 1970.
+std::vector<double> boots_of(const ClockLog& log, const TimeRange& of_arrivals) {
+  const bool known = !log.boots.empty() && log.boots.front().point == 0 &&
+                     log.boots.size() == log.segments.size() + 1;
+  if (!known || !is_from_1970(of_arrivals.first_s)) return {};
+  const auto arrivals_day = std::chrono::floor<std::chrono::days>(std::chrono::sys_seconds(
+      std::chrono::seconds(static_cast<std::int64_t>(of_arrivals.first_s))));
+  const auto year = static_cast<int>(std::chrono::year_month_day(arrivals_day).year());
+  std::vector<double> boots_s;
+  boots_s.reserve(log.points.size());
+  std::size_t boot = 0;
+  for (std::size_t i = 0; i < log.points.size(); ++i) {
+    if (boot + 1 < log.boots.size() && log.boots[boot + 1].point <= i) ++boot;
+    const ClockLog::Boot& of = log.boots[boot];
+    boots_s.push_back(of.has_year ? of.at_s : in_year(of.at_s, year));
+  }
+  return boots_s;
+}
+
 // Moves what is behind the jump of an hour, of which a year has one in either direction.
 std::optional<DaylightSaving> undo_daylight_saving(LogPointRow& row) {
   if (!(row.interval_s <= kLongestIntervalS)) return std::nullopt;
@@ -153,6 +175,7 @@ std::vector<LoggedChange> log_changes_of(const LogPointRow& row, double middle_s
 template <class T>
 std::vector<T> in_order(const std::vector<T>& values, const std::vector<std::size_t>& order) {
   std::vector<T> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(values[i]);
   return sorted;
 }
@@ -320,12 +343,15 @@ LoggedClock logged_clock(const HostLog& log, const TimeRange& of_arrivals) {
                     .format = read.format,
                     .are_summaries = read.are_summaries(),
                     .zero_s = log.zero_s};
-  clock.from_1970 = is_from_1970(1e-6 * static_cast<double>(read.points.front().time.count()));
+  const std::vector<double> boots_s = boots_of(read, of_arrivals);
+  clock.from_1970 = !boots_s.empty() ||
+                    is_from_1970(1e-6 * static_cast<double>(read.points.front().time.count()));
   const auto [begin, end] =
       clock.from_1970 ? std::pair(std::size_t{0}, read.points.size()) : one_boot(read, of_arrivals);
   LogPointRow row;
   for (std::size_t i = begin; i < end; ++i) {
-    row.time_s.push_back(1e-6 * static_cast<double>(read.points[i].time.count()));
+    const double boot_s = boots_s.empty() ? 0 : boots_s[i];
+    row.time_s.push_back(boot_s + 1e-6 * static_cast<double>(read.points[i].time.count()));
     row.error_s.push_back(read.points[i].error_s);
     if (clock.are_summaries) clock.largest_s.push_back(read.largest_s[i]);
   }

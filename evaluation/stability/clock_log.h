@@ -86,6 +86,14 @@ struct ClockLog {
   std::vector<double> largest_s{};
   // Where a segment begins, but the first.
   std::vector<std::size_t> segments{};
+  // When the boot was that times count from, by the dates that a collector of logs (journald,
+  // syslog, Docker) put before the first line of each segment; none without such dates.
+  struct Boot {
+    std::size_t point = 0;  // the first of its segment
+    double at_s = 0;        // since 1970
+    bool has_year = true;   // else of the year kYearOfSyslog (log_entry.h)
+  };
+  std::vector<Boot> boots{};
   std::size_t unlocked = 0;          // points before the servo locked
   std::vector<std::string> notes{};  // what was left out or taken for granted, "FILE: ..." each
 

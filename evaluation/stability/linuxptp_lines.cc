@@ -52,13 +52,14 @@ struct Head {
   std::string_view stamp{};
   std::string_view tag{};
   std::string_view rest{};
+  std::string_view written{};  // what may be a date
 };
 
 // Takes "ptp4l[263]: [3906.052] ", "ptp4l[3906.052]: " and both off a line; nothing if no program
 // of linuxptp speaks.
 std::optional<Head> head_of(const LogEntry& entry) {
   std::string_view rest = entry.message;
-  Head head{.host = entry.host, .process = entry.process};
+  Head head{.host = entry.host, .process = entry.process, .written = entry.written};
   const auto known = std::ranges::find(kPrograms, entry.program);
   if (known != kPrograms.end()) head.program = *known;
   for (bool more = true; more;) {
@@ -70,6 +71,7 @@ std::optional<Head> head_of(const LogEntry& entry) {
         const std::string_view behind = rest.substr(at + name.size());
         if (!behind.starts_with('[') && !behind.starts_with(": ")) continue;
         if (head.program == nullptr && head.host.empty()) head.host = host_in(rest.substr(0, at));
+        if (head.program == nullptr && head.written.empty()) head.written = rest.substr(0, at);
         // Behind the first program only a second head counts, not what it says of another.
         if (head.program != nullptr && at != 0) break;
         head.program = program;
@@ -145,7 +147,8 @@ class LinuxptpLines final : public LogLines {
                   .host = head.host,
                   .process = head.process,
                   .tag = head.tag,
-                  .point = {.time = *time}};
+                  .point = {.time = *time},
+                  .written = head.written};
     if (names > 0) {
       const char* end = words[names - 1].data() + words[names - 1].size();
       found.name = {words[0].data(), static_cast<std::size_t>(end - words[0].data())};

@@ -19,7 +19,19 @@ struct LogEntry {
   std::string_view program{};
   std::string_view process{};
   std::string_view message{};  // of a line that is none of these forms, the line
+  std::string_view written{};  // when: microseconds since 1970, or ISO 8601; may be empty
 };
+
+// The date of a line: microseconds since 1970 (journald), ISO 8601 (Docker, Kubernetes, rsyslog) or
+// syslog's "Sep  3 10:32:22", which has no year: then it is of kYearOfSyslog.
+struct WrittenTime {
+  double at_s = 0;  // since 1970
+  bool has_year = true;
+};
+inline constexpr int kYearOfSyslog = 2024;  // has a 29 February
+std::optional<WrittenTime> written_time_in(std::string_view text);
+// The same day and time of another year.
+double in_year(double at_s, int year);
 
 class JournalText {
  public:
@@ -35,6 +47,7 @@ class JournalText {
   std::string program_{};
   std::string process_{};
   std::string message_{};
+  std::string written_{};
   std::string exported_{};  // the message of the last entry
 };
 

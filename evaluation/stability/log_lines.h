@@ -42,6 +42,8 @@ struct LogLine {
   ClockLogPoint point{};
   std::optional<double> largest_s{};  // of a summary; the point is its RMS
   bool locked = true;
+  // What may be the date at which a collector of logs had the line, where times count from a boot.
+  std::string_view written{};
 };
 
 class LogLines {

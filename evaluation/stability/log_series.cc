@@ -60,6 +60,10 @@ void LogSeriesSet::Series::append(Series next) {
   const std::size_t before = points.size();
   if (next.points.front().time < points.back().time) segments.push_back(before);
   for (const std::size_t begin : next.segments) segments.push_back(before + begin);
+  for (ClockLog::Boot boot : next.boots) {
+    boot.point += before;
+    boots.push_back(boot);
+  }
   points.insert(points.end(), next.points.begin(), next.points.end());
   largest_s.insert(largest_s.end(), next.largest_s.begin(), next.largest_s.end());
   unlocked += next.unlocked;
@@ -100,6 +104,16 @@ void LogSeriesSet::add(const LogLine& line, const LogPlace& place) {
   if (!line.locked && options_.locked) return;
   if (!series.points.empty() && line.point.time < series.points.back().time) {
     series.segments.push_back(series.points.size());
+  }
+  const bool is_first = series.points.empty() || (!series.segments.empty() &&
+                                                  series.segments.back() == series.points.size());
+  if (is_first) {
+    if (const auto written = written_time_in(line.written)) {
+      const double since_boot_s = 1e-6 * static_cast<double>(line.point.time.count());
+      series.boots.push_back({.point = series.points.size(),
+                              .at_s = written->at_s - since_boot_s,
+                              .has_year = written->has_year});
+    }
   }
   series.points.push_back(line.point);
   if (line.largest_s) series.largest_s.push_back(*line.largest_s);
@@ -196,6 +210,7 @@ ClockLog LogSeriesSet::take(const LogPlace& place, bool absolute) {
                .points = std::move(series.points),
                .largest_s = std::move(series.largest_s),
                .segments = std::move(series.segments),
+               .boots = std::move(series.boots),
                .unlocked = series.unlocked};
   add_segment_notes(log, absolute);
   if (log.unlocked > 0) {

@@ -42,6 +42,7 @@ class LogSeriesSet {
     std::vector<ClockLogPoint> points{};
     std::vector<double> largest_s{};
     std::vector<std::size_t> segments{};
+    std::vector<ClockLog::Boot> boots{};
     std::size_t unlocked = 0;
     std::size_t first_line = 0;
     std::size_t last_line = 0;

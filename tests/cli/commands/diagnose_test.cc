@@ -66,6 +66,73 @@ TEST_F(DiagnoseCommand, BadInputIsNamed) {
   EXPECT_THAT(empty.err, HasSubstr("the file is empty"));
 }
 
+// Arrivals from 2023-11-14 22:13:20 UTC on, on host pc, whose clock is set by -250 ms after 30 s.
+std::string recording_of_a_set_clock() {
+  std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),camera,host\n";
+  for (int i = 0; i < 1800; ++i) {
+    const double ms = i * 1000.0 / 30;
+    const double late_ms = 1.7e12 + 9 + i * 7919 % 97 * 0.005 - (ms > 30'000 ? 250 : 0);
+    text += fmt::format("Depth,0,{},{:.3f},{:.6f},left,pc\n", i, 700 + ms, ms + late_ms);
+    text += fmt::format("Depth,0,{},{:.3f},{:.6f},right,pc\n", i, 400 + ms, ms + late_ms);
+  }
+  return text;
+}
+
+// What ptp4l says of that clock, by syslog: the boot was 100 s before the recording.
+std::string log_of_a_set_clock(const char* day) {
+  std::string text;
+  for (int s = -20; s < 80; ++s) {
+    text += fmt::format(
+        "{} 22:{:02}:{:02} pc ptp4l: [{}.010] master offset {} s2 freq +{} path delay 1200\n", day,
+        13 + (s + 20) / 60, (s + 20) % 60, 100 + s, s < 30 ? 250'000'000 + s % 7 : s % 7,
+        900 + s % 5);
+  }
+  return text;
+}
+
+TEST_F(DiagnoseCommand, AClockLogTellsThatTheClockWasSetAndNotTheCameras) {
+  const std::string rig = file("rig.csv", recording_of_a_set_clock());
+  const std::string log = file("ptp4l.log", log_of_a_set_clock("Nov 14"));
+  const ProgramResult result = run({"diagnose", rig, "--clock-log", log});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("the clock of host pc was set by -250"));
+  EXPECT_THAT(result.out, HasSubstr("jump by -2"));
+  EXPECT_THAT(result.out, HasSubstr("The clocks of the hosts by their logs"));
+  const ProgramResult json = run({"diagnose", rig, "--clock-log", "pc=" + log, "--format", "json"});
+  ASSERT_EQ(json.status, 0) << json.err;
+  const Json root = Json::parse(json.out);
+  EXPECT_EQ(root["clocks"]["hosts"][0]["placed"], "as_is");
+  EXPECT_EQ(root["findings"][0]["kind"], "host_clock_step");
+}
+
+TEST_F(DiagnoseCommand, AClockLogThatDoesNotFitIsNamed) {
+  const std::string rig = file("rig.csv", recording_of_a_set_clock());
+  const std::string log = file("ptp4l.log", log_of_a_set_clock("Nov 20"));
+  const ProgramResult other_day = run({"diagnose", rig, "--clock-log", log});
+  EXPECT_EQ(other_day.status, 0) << other_day.err;
+  EXPECT_THAT(other_day.out, HasSubstr("2023-11-20"));
+  const ProgramResult other_host = run({"diagnose", rig, "--clock-log", "elsewhere=" + log});
+  EXPECT_EQ(other_host.status, 0) << other_host.err;
+  EXPECT_THAT(other_host.out, HasSubstr("elsewhere"));
+  const ProgramResult none = run({"diagnose", rig, "--clock-log", "pc=absent.log"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("absent.log"));
+}
+
+TEST_F(DiagnoseCommand, ColumnsBesideStampsAreFound) {
+  std::string text = "camera,seq,stamp_ms,arrival_ms,exposure_us\n";
+  for (int i = 0; i < 1800; ++i) {
+    const double ms = i * 1000.0 / 30;
+    text += fmt::format("a,{},{:.3f},{:.3f},{}\n", i, ms, ms + 9, 2000 + 10 * i);
+    text += fmt::format("b,{},{:.3f},{:.3f},{}\n", i, ms, ms + 9, 8000);
+  }
+  const ProgramResult result =
+      run({"diagnose", file("rig.csv", text), "--columns",
+           "sensor=stamp_ms,arrival=arrival_ms,counter=seq,camera=camera"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("camera a: its exposures vary from"));
+}
+
 TEST_F(DiagnoseCommand, TakesARecordingFolder) {
   ASSERT_EQ(run({"record", "--scenario", "3cam_1host_30fps", "--pipelines", "free_running", "--set",
                  "/timeline/frames=1500", "-o", "rig"})
