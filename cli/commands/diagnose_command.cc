@@ -1,9 +1,10 @@
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/host_logs.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
@@ -49,32 +50,17 @@ struct DiagnoseArguments {
   std::vector<std::string> command;
 };
 
-// "HOST=FILE", or a file alone; every series of it.
-std::vector<evaluation::HostLog> host_logs(const std::vector<std::string>& given) {
-  std::vector<evaluation::HostLog> logs;
-  for (const std::string& text : given) {
-    const std::size_t equals = text.find('=');
-    const bool has_host = equals != std::string::npos && !std::filesystem::exists(text);
-    const std::string file = has_host ? text.substr(equals + 1) : text;
-    const std::string host = has_host ? text.substr(0, equals) : "";
-    for (const evaluation::ClockLogSeries& series : evaluation::clock_log_series(file)) {
-      logs.push_back(
-          {.host = host, .log = evaluation::read_clock_log(file, {.series = series.name})});
-      for (const std::string& note : logs.back().log.notes) print_note(note);
-    }
-  }
-  return logs;
-}
-
 int run_diagnose(const DiagnoseArguments& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
   const auto rig = read_inputs(options.files, options.inputs);
   if (!rig) return kInterrupted;
+  app::HostLogs clocks = app::host_logs(options.clock_logs);
+  for (const std::string& note : clocks.notes) print_note(note);
   const evaluation::Diagnosis diagnosis =
       evaluation::diagnose(rig->streams, {.rate_hz = options.rate_hz,
                                           .one_host = options.one_host,
-                                          .clock_logs = host_logs(options.clock_logs)});
+                                          .clock_logs = std::move(clocks.logs)});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
                                         : plain(reports::diagnose_document(diagnosis)));
   if (page) {

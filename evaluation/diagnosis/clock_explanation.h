@@ -11,8 +11,9 @@
 // Complexity: O(n log n) in the frames. Source: Efron 1982, The Jackknife, the Bootstrap and Other
 // Resampling Plans, section 3 (delete-a-group variance).
 //
-//   const ClockExplanation found = explained_by(delays, clock.interval_s,
-//                                               [&](double at_s) { return clock.error_at(at_s); });
+//   const ClockExplanation found = explained_by(delays, host_clock.interval_s,
+//                                               [&](double at_s) { return
+//                                               host_clock.error_at(at_s); });
 //   if (found.share > 0.5) print(found.before_ms, found.after_ms);
 #pragma once
 

@@ -5,7 +5,8 @@
 // to it is that of the camera and its link, the delay from there to the arrival that of the host.
 // Both are less their smallest (1 % are below), since the constant part is of two clocks.
 //
-//   const ColumnFacts facts = column_facts(stream.columns, frames, offsets_ms);
+//   const RecordedStream& stream = recorded.streams[0];
+//   const ColumnFacts facts = column_facts(stream.columns, stream.frames, offsets_ms);
 //
 // Complexity: O(n).
 #pragma once

@@ -1,6 +1,7 @@
 // The faults that a diagnosis names, the most harmful first: what the cause is, which numbers show
 // it, what to do, and how sure that is.
 //
+//   Diagnosis diagnosis = diagnose(recorded.streams, {});
 //   diagnosis.findings = findings_of(diagnosis);   // everything else is filled in
 //
 // Complexity: O(n) in the cameras for each, with few jumps.

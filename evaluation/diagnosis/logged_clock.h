@@ -5,10 +5,10 @@
 // - by a zero that is known (HostLog::zero_s);
 // - as it is, where both count from 1970 or neither does, and they overlap;
 // - by a time zone, where both count from 1970: the shift by a zone in use that brings the overlap;
-//   of several, the one that puts most steps of the log on jumps of the arrivals, then the longest
-//   overlap, then the smallest shift. It also replaces an overlap if it matches more steps;
+//  of several, the one that puts most steps of the log on jumps of the arrivals, then the longest
+//  overlap, then the smallest shift. It also replaces an overlap if it matches more steps;
 // - by its steps: the shift that puts most of them on jumps of equal size, if there is one such
-//   (of the 30 largest steps and jumps);
+//  (of the 30 largest steps and jumps);
 // - nowhere.
 //
 // A log whose times jump by an hour, forth or back, between points that otherwise are evenly spaced
@@ -20,10 +20,10 @@
 //
 // Complexity: O(n log n) in the points, times the number of zones.
 //
-//   const TimeRange arrivals = {first_s, last_s};
+//   const TimeRange arrivals = {.first_s = 1.7e9, .last_s = 1.7e9 + 60};
 //   LoggedClock clock = logged_clock({.log = read_clock_log("tracking.log")}, arrivals);
 //   place(clock, arrivals, jumps);
-//   const double ahead_s = clock.error_at(first_s);
+//   const double ahead_s = clock.error_at(arrivals.first_s);
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Where the missing frames of a stream are: at its start, at even distances, or anywhere. It tells
 // what to look for: a camera that settles, a task that runs every so often, or a link.
 //
-//   const LossPlaces places = loss_places(frames, gaps);
+//   const LossPlaces places = loss_places(recorded.streams[0].frames, gaps);
 //
 // Complexity: O(n log n).
 #pragma once

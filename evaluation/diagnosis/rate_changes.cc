@@ -54,7 +54,7 @@ std::vector<RateChange> coarse_changes(Frames frames) {
     const double found = block_interval_ms(frames, begin);
     if (std::isnan(found)) continue;
     if (std::isnan(now)) now = found;
-    if (is_same_rate(found, next)) {
+    if (is_same_rate(found, next) && !is_same_rate(found, now)) {
       changes.push_back(
           {.at_s = seconds_at(frames, since), .from_hz = 1e3 / now, .to_hz = 1e3 / found});
       now = found;

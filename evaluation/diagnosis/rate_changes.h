@@ -6,7 +6,7 @@
 // recording, far beyond what the eighths scatter. A phase that moves at once is no change of rate
 // (PhaseStep).
 //
-//   const std::vector<RateChange> changes = rate_changes(frames, grid);
+//   const std::vector<RateChange> changes = rate_changes(recorded.streams[0].frames, grid);
 //
 // Complexity: O(n log n).
 #pragma once

@@ -3,12 +3,12 @@
 //
 // Frames are paired by arrival, each host's clock put right by its log, at the phase that most
 // have, to within half a period. The difference d of a pair is a sum of six series:
-//   exposure    the difference of the exposure lengths, if they are known: a frame leaves after it
-//   host clock  the difference of the hosts' errors by their logs; 0 on one host
-//   stamp       the difference of the sensor stamps about a line, in each block of time
-//   delivery    the difference of (arrival - sensor stamp) about a line, in each block
-//   constant    the mean of what remains
-//   unexplained what remains then: all that is slower than a block and in no log
+//  exposure    the difference of the exposure lengths, if they are known: a frame leaves after it
+//  host clock  the difference of the hosts' errors by their logs; 0 on one host
+//  stamp       the difference of the sensor stamps about a line, in each block of time
+//  delivery    the difference of (arrival - sensor stamp) about a line, in each block
+//  constant    the mean of what remains
+//  unexplained what remains then: all that is slower than a block and in no log
 // What moves both cameras alike, as a trigger's jitter does, is in none of them. A part that is
 // unknown (NaN) is in the constant and in the unexplained one.
 //

@@ -4,7 +4,7 @@
 // nearest of the first; offsets are continued beyond half a period, so that a free-running stream
 // shows as a steady drift.
 //
-//   PairDiagnosis pair = compare_streams(colour.frames, depth.frames);
+//   PairDiagnosis pair = compare_streams(recorded.streams[1].frames, recorded.streams[0].frames);
 //
 // Complexity: O(n).
 #pragma once

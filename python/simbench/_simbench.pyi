@@ -91,7 +91,11 @@ def compare_baseline(run: Run, baseline: str, options: ComparisonOptions) -> Com
 def compare_two(run: Run, a: str, b: str, options: ComparisonOptions) -> Comparison: ...
 def inspect_files(files: List[str], report: _Report) -> Inspection: ...
 def diagnose_files(
-    files: List[str], rate_hz: Optional[float], one_host: bool, report: _Report
+    files: List[str],
+    rate_hz: Optional[float],
+    one_host: bool,
+    clock_logs: List[str],
+    report: _Report,
 ) -> Diagnosis: ...
 def run_clocks(
     request: RunRequest, duration_s: int, from_s: int, report: _Report

@@ -138,13 +138,17 @@ def diagnose(
     *,
     rate_hz: Optional[float] = None,
     one_host: bool = False,
+    clock_logs: Sequence[str] = (),
     progress: Optional[bool] = None,
 ) -> Diagnosis:
     """Finds out whether the hardware sync of a recorded rig works. rate_hz: the trigger's; None: the
-    rate of most cameras. one_host: one computer stamped all arrivals."""
+    rate of most cameras. one_host: one computer stamped all arrivals. clock_logs: logs of the
+    hosts' clocks, "HOST=FILE" each, or a file alone."""
     with Progress(progress, "stamp") as shown:
         found = Diagnosis(
-            _simbench.diagnose_files(_paths(recordings), rate_hz, one_host, shown.callback)
+            _simbench.diagnose_files(
+                _paths(recordings), rate_hz, one_host, list(clock_logs), shown.callback
+            )
         )
     _warn(found.notes)
     return found

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/host_logs.h"
 #include "app/inspection.h"
 #include "app/recorded_streams.h"
 #include "app/stream_run.h"
@@ -100,13 +101,17 @@ py::list streams_list(const InspectedFiles& of) {
 
 std::shared_ptr<DiagnosedFiles> diagnose_files(const std::vector<std::string>& files,
                                                std::optional<double> rate_hz, bool one_host,
+                                               const std::vector<std::string>& clock_logs,
                                                const py::object& on_progress) {
   RecordedStreams rig = streams_of(files, on_progress);
   auto diagnosed = std::make_shared<DiagnosedFiles>();
   diagnosed->files = files;
   diagnosed->notes = std::move(rig.notes);
+  const app::HostLogs clocks = app::host_logs(clock_logs);
+  diagnosed->notes.insert(diagnosed->notes.end(), clocks.notes.begin(), clocks.notes.end());
   diagnosed->diagnosis = watched<evaluation::Diagnosis>(on_progress, [&](const Progress&) {
-    return evaluation::diagnose(rig.streams, {.rate_hz = rate_hz, .one_host = one_host});
+    return evaluation::diagnose(
+        rig.streams, {.rate_hz = rate_hz, .one_host = one_host, .clock_logs = clocks.logs});
   });
   return diagnosed;
 }

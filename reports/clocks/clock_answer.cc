@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "evaluation/answer/answer.h"
@@ -79,14 +80,25 @@ std::string cause_sentence(const ClockCause& cause) {
                       time_change_text(cause.largest_from_ms, cause.largest_to_ms));
 }
 
+// What alone makes nearly all of the error; nothing: no cause does.
+std::optional<std::string> dominant_cause_text(const ClockCauses& causes) {
+  constexpr double kNearlyAll = 0.9;
+  if (causes.found.empty() || causes.found.front().effect() < kNearlyAll) return std::nullopt;
+  return cause_sentence(causes.found.front());
+}
+
 std::string found_causes_text(const ClockCauses& causes) {
   if (causes.found.empty()) {
     return fmt::format("Nothing alone, by {:g} % or more: {}.", 100 * evaluation::kLeastEffect,
                        fmt::join(causes.tried, ", "));
   }
   std::string text;
-  for (std::size_t i = 0; i < std::min(kNamedCauses, causes.found.size()); ++i) {
+  const std::size_t first = dominant_cause_text(causes) ? 1 : 0;  // that is in the lead
+  for (std::size_t i = first; i < std::min(kNamedCauses, causes.found.size()); ++i) {
     text += cause_sentence(causes.found[i]) + " ";
+  }
+  if (text.empty()) {
+    text = fmt::format("No other one alone by {:g} % or more. ", 100 * evaluation::kLeastEffect);
   }
   return fmt::format("{}(Means over {}.)", text, counted(causes.seeds, "seed"));
 }
@@ -130,6 +142,7 @@ AnswerText clock_answer(const evaluation::Results& results, const Answer& answer
     return none;
   }
   AnswerText text{.lead = closest_sentence(answer)};
+  if (const auto dominant = dominant_cause_text(causes)) text.lead += " " + *dominant;
   text.add("Others", distance_text(results, answer));
   text.add("Failed", failed_text(answer));
   text.add("In sync?", in_sync_sentence(*answer.best));

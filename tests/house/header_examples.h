@@ -162,6 +162,14 @@ extern const SweepPlan plan;
 extern const std::vector<std::size_t> missing;
 extern std::vector<std::optional<SweepScore>> scores;
 extern std::atomic<bool> interrupted;
+extern const std::vector<HostLog> logs;
+extern const CameraDelays delays, delays_a, delays_b;
+extern const LoggedClock host_clock;
+extern const std::vector<DelayJump> jumps;
+extern const std::vector<FrameGap> gaps;
+extern const StampGrid grid;
+extern const std::vector<double> offsets_ms;
+extern const ErrorOfClock error_a, error_b;
 }  // namespace evaluation
 
 namespace hardware {
@@ -213,6 +221,7 @@ extern ReprojectionRow row;
 namespace reports {
 extern const Whatever law, simulated, path, manifest, identity, begin, end, work_on, refuse,
     provenance, measured, summary, run, choice, results, mesh, rows, clocks, diagnosis;
+extern const evaluation::ClockAccount account;
 extern const Archive a, b;
 extern const SeedRange seeds_of_a, seeds_of_b;
 extern const evaluation::Row row_a, row_b;

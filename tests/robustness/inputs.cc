@@ -149,7 +149,10 @@ void Inputs::add_bags() {
         copy(fmt::format("tests/fuzz/corpus/{}/{}", format, name),
              fmt::format("{}/{}", format, name));
     }
-    add({format, 2, files_of(format), {{"inspect", "%"}, {"inspect", "%", "--format", "json"}}});
+    add({format,
+         2,
+         files_of(format),
+         {{"inspect", "%"}, {"inspect", "%", "--format", "json"}, {"diagnose", "%"}}});
   }
 }
 

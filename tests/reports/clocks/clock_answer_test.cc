@@ -38,8 +38,14 @@ TEST(ClockAnswer, CausesAreFromOneValueToAnother) {
                            .largest_from_ms = 140000,
                            .largest_to_ms = 0.01}};
   const std::string text = whole_text(clock_answer(results));
-  EXPECT_THAT(text, HasSubstr("Without the step of a clock: largest error of a host from 140 s "
-                              "to 10.0 us. (Means over 2 seeds.)"));
+  EXPECT_THAT(clock_answer(results).lead,
+              HasSubstr("Without the step of a clock: largest error of a host from 140 s "
+                        "to 10.0 us."));
+  EXPECT_THAT(text, HasSubstr("No other one alone by 20 % or more. (Means over 2 seeds.)"));
+  results.causes.found[0].largest_to_ms = 70'000;
+  EXPECT_THAT(whole_text(clock_answer(results)),
+              HasSubstr("Without the step of a clock: largest error of a host from 140 s to 70.0 "
+                        "s. (Means over 2 seeds.)"));
   EXPECT_THAT(text, Not(HasSubstr("Mostly constant")));
   EXPECT_THAT(text, Not(HasSubstr("Not tried")));
   results.causes.refused = {"noise: found 0, allowed more"};
