@@ -2,7 +2,9 @@
 // `simbench stability` reads. Each series of a file is a log.
 //
 //   const app::HostLogs found = app::host_logs({"left=ptp4l.log", "tracking.log"});
-//   const evaluation::Diagnosis d = evaluation::diagnose(recorded.streams, {.clock_logs = found.logs});
+//   evaluation::DiagnoseOptions options;
+//   options.clock_logs = found.logs;
+//   const evaluation::Diagnosis d = evaluation::diagnose(recorded.streams, options);
 //
 // Errors: scenarios::InputError, as read_clock_log() has them. Complexity: linear in the files, for
 // each series.

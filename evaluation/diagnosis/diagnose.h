@@ -13,7 +13,8 @@
 // periods agree within the fits' uncertainty (so far that it happens to one group in a thousand
 // whose cameras do have one period), also at a whole multiple of the common period. The time they
 // are compared in is that of the stamps, if all count from one epoch (or boot) and run at one rate
-// against the arrivals, else that of the arrivals. The largest set that agrees is the standard for
+// against the arrivals, else that of the arrivals: of cameras on one host by their differences,
+// which a slewed clock leaves alone (common_mode.h). The largest set that agrees is the standard for
 // the others. It is of cameras whose periods are known well enough for the verdict "works"; if
 // there is none, and some disagree all the same, of any. The verdict "works" needs a resolution of
 // 5 ppm: free-running cameras rarely agree that well, and two of them by chance once in ten.

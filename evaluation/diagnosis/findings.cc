@@ -76,9 +76,17 @@ void add_host(CameraFindings& found) {
 void add_unknown(CameraFindings& found) {
   const CameraFindings::Kind kind = {
       .name = "unknown_rate", .harm = Harm::kMinor, .in_verdict = true};
-  if (std::isnan(found.camera.facts.host_period.period_ms)) {
+  const auto group =
+      std::ranges::count(found.diagnosis.cameras, found.camera.stream, &CameraDiagnosis::stream);
+  if (!found.camera.facts.has_grid) {
+    found.add({.name = "no_grid", .harm = Harm::kSerious, .in_verdict = group > 1},
+              fmt::format("its intervals vary by {:.2f} ms by themselves: no trigger of an even "
+                          "period starts its frames",
+                          found.camera.facts.interval_jitter_ms),
+              "set a fixed rate and exposure, or pair frames by nearest stamp");
+  } else if (std::isnan(found.camera.facts.host_period.period_ms)) {
     found.add(kind, "too few frames to determine its rate in host time");
-  } else if (found.group().standard) {  // else the verdict reports it for all
+  } else if (found.group().standard && group > 1) {  // else the verdict reports it for all
     found.add(kind, "its rate in host time is too uncertain to compare");
   }
 }

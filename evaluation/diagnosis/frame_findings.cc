@@ -111,7 +111,14 @@ void add_delivery(CameraFindings& found) {
                           facts.batched_share * 100),
               "look at the reader's queue, at interrupt moderation and at energy saving");
   }
-  if (facts.interval_jitter_ms > kUnsteady * facts.period_ms && !facts.stamped_on_arrival) {
+  if (facts.out_of_order > 0) {
+    found.add(
+        {.name = "out_of_order"},
+        fmt::format("{} arrived after later ones", counted(whole(facts.out_of_order), "frame")),
+        "sort by the frame's number or stamp");
+  }
+  if (facts.interval_jitter_ms > kUnsteady * facts.period_ms && facts.has_grid &&
+      !facts.stamped_on_arrival) {
     found.add({.name = "unsteady"},
               fmt::format("unsteady: its intervals differ from whole periods of {1:.3f} ms by "
                           "{0:.3f} ms (standard deviation), {2:.1f} % are within a tenth of a "

@@ -94,6 +94,7 @@ void note_grid(std::span<const StampedFrame> frames, const StampGrid& grid, Stre
   facts.interval_jitter_ms = grid.interval_jitter_ms;
   facts.scatter_ms = grid.scatter_ms;
   facts.on_grid_share = grid.on_grid_share;
+  facts.has_grid = grid.exists;
   facts.periods = grid.points;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (interval_ms(frames, i) < 0) ++facts.backward_stamps;
@@ -252,27 +253,9 @@ void note_least_delay(std::span<const StampedFrame> frames, StreamFacts& facts) 
   facts.delay.least_ms = quantile(std::move(delays), 0.01);
 }
 
-// How much of an interval's deviation the next one takes back: -0.5 for jitter about a grid, 0 for
-// intervals that vary by themselves.
-double correlation_of_intervals(const StreamFacts& facts) {
-  double product = 0;
-  double square = 0;
-  double before = 0;
-  for (std::size_t i = 1; i < facts.stamps_ms.size(); ++i) {
-    const auto points = static_cast<double>(facts.periods[i] - facts.periods[i - 1]);
-    const double deviation = facts.stamps_ms[i] - facts.stamps_ms[i - 1] - points * facts.period_ms;
-    product += before * deviation;
-    square += deviation * deviation;
-    before = deviation;
-  }
-  return square > 0 ? product / square : 0;
-}
-
 bool is_stamped_on_arrival(const StreamFacts& facts) {
-  constexpr double kTakenBack = -0.25;
   return !facts.one_clock && facts.scatter_ms > kSteadyShare * facts.period_ms &&
-         facts.delay.scatter_ms < kFollowsShare * facts.scatter_ms &&
-         correlation_of_intervals(facts) < kTakenBack;
+         facts.delay.scatter_ms < kFollowsShare * facts.scatter_ms && facts.has_grid;
 }
 
 // Frames of one batch arrive together, though their stamps are a period apart.
@@ -396,7 +379,8 @@ StreamFacts stream_facts(const RecordedStream& stream, std::optional<double> oth
   facts.one_clock = has_one_clock(recorded);
   note_arrivals(recorded, facts);
   note_least_delay(recorded, facts);
-  const std::vector<StampedFrame> all = unwrapped(recorded);
+  std::vector<StampedFrame> all = unwrapped(recorded);
+  facts.out_of_order = put_in_order_of_exposure(all);
   facts.account = {.delivered = static_cast<std::int64_t>(all.size())};
   if (const auto grid = stamp_grid(all, other_period_ms)) {
     facts.account = frame_account(all, stream.counted, *grid);

@@ -83,12 +83,14 @@ struct StreamFacts {
   double interval_jitter_ms = kNan;  // standard deviation from whole periods
   double scatter_ms = kNan;          // of a stamp about the grid, robust
   double on_grid_share = kNan;       // of intervals within a tenth of whole periods
+  bool has_grid = false;             // else intervals vary by themselves
   double drift_ppm = kNan;           // (host rate / device rate - 1) 1e6, from first to last frame
   PeriodEstimate stamp_period;       // by the stamps, steps taken out
   PeriodEstimate host_period;        // by the arrivals, jumps and steps taken out
   // Events.
   FrameAccount account;  // of all frames, the first seconds too
   LossPlaces losses;
+  std::int64_t out_of_order = 0;     // frames that arrived after later ones
   std::int64_t repeated_stamps = 0;  // frames with the stamp of the frame before
   std::int64_t backward_stamps = 0;
   std::int64_t backward_arrivals = 0;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/diagnosis/common_mode.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "recording/counted.h"
 
@@ -72,6 +73,7 @@ class Group {
     deviations_ = significant_deviations();
     by_stamps_ = have_common_stamps();
     find_candidates();
+    compare_on_one_host();
     find_standard();
     if (in_standard_.empty()) return verdict();
     for (const Candidate& candidate : candidates_) place(candidate);
@@ -139,7 +141,8 @@ class Group {
   void find_candidates() {
     std::vector<double> periods;
     for (const GroupMember& member : members_) {
-      if (period_of(member).period_ms > 0) periods.push_back(period_of(member).period_ms);
+      const bool usable = period_of(member).period_ms > 0 && member.facts->has_grid;
+      if (usable) periods.push_back(period_of(member).period_ms);
     }
     if (periods.empty()) return;
     // The lower of two: half the rate is a common fault, twice the rate is none.
@@ -147,7 +150,7 @@ class Group {
     common_ms_ = expected_period_ms_.value_or(periods[(periods.size() - 1) / 2]);
     for (std::size_t i = 0; i < members_.size(); ++i) {
       const PeriodEstimate& own = period_of(members_[i]);
-      if (!(own.period_ms > 0)) continue;
+      if (!(own.period_ms > 0) || !members_[i].facts->has_grid) continue;
       const double ratio = own.period_ms / common_ms_;
       const double multiple = std::round(ratio);
       if (multiple < 1 || multiple > kLargestMultiple ||
@@ -160,6 +163,26 @@ class Group {
       longest_s_ = std::max(longest_s_, members_[i].facts->span_s());
       worst_scatter_ms_ = std::max(worst_scatter_ms_, members_[i].facts->delay.scatter_ms);
       candidates_.push_back({i, own.period_ms / multiple, own.sd_ppm});
+    }
+  }
+
+  // On one clock the differences of periods may be known better than the periods.
+  void compare_on_one_host() {
+    if (by_stamps_ || more_hosts_than_one()) return;
+    std::vector<const StreamFacts*> facts;
+    std::vector<int> multiples;
+    for (const Candidate& candidate : candidates_) {
+      facts.push_back(members_[candidate.member].facts);
+      multiples.push_back(standing(candidate).period_multiple);
+    }
+    const auto periods = relative_periods(facts, multiples);
+    if (!periods) return;
+    const double worst_ppm = std::ranges::max(*periods, {}, &PeriodEstimate::sd_ppm).sd_ppm;
+    if (worst_ppm >= worst_sd_ppm_) return;
+    worst_sd_ppm_ = worst_ppm;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      candidates_[i].period_ms = (*periods)[i].period_ms;
+      candidates_[i].sd_ppm = (*periods)[i].sd_ppm;
     }
   }
 
@@ -459,6 +482,11 @@ class Group {
   }
 
   std::string too_little() const {
+    const bool vary = std::ranges::any_of(members_, [](const GroupMember& member) {
+      return member.facts->period_ms > 0 && !member.facts->has_grid;
+    });
+    if (vary && candidates_.empty())
+      return "their intervals vary by themselves: there is no period to compare";
     std::string text =
         fmt::format("too few or too unsteady frames of: {}", names(Follows::kUnknown));
     const double resolution = resolution_of(worst_sd_ppm_);

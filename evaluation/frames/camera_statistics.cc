@@ -143,6 +143,25 @@ std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> recorded) {
   return frames;
 }
 
+std::int64_t put_in_order_of_exposure(std::vector<StampedFrame>& frames) {
+  constexpr std::uint64_t kFarthest = 64;  // frames; more is a restart
+  const auto overtaken = [&frames](std::size_t i, std::size_t before) {
+    return frames[i].sensor < frames[before].sensor && frames[i].counter < frames[before].counter &&
+           frames[before].counter - frames[i].counter <= kFarthest;
+  };
+  std::int64_t moved = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!overtaken(i, i - 1) || frames[i].arrival < frames[i - 1].arrival) continue;
+    std::size_t place = i - 1;
+    while (place > 0 && overtaken(i, place - 1)) --place;
+    const auto begin = frames.begin() + static_cast<std::ptrdiff_t>(place);
+    const auto end = frames.begin() + static_cast<std::ptrdiff_t>(i);
+    std::rotate(begin, end, end + 1);
+    ++moved;
+  }
+  return moved;
+}
+
 bool counts_from_1970(std::span<const StampedFrame> frames) {
   constexpr Nanoseconds kYear2000 = std::chrono::seconds(946'684'800);
   return std::any_of(frames.begin(), frames.end(),

@@ -69,6 +69,10 @@ std::vector<std::string> doubts_of(const RecordedStream& stream);
 // (half range rule: late frames are no wrap). Stamps beyond the register's range stay as they are.
 std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
 
+// Puts frames that were delivered after later ones (their stamps and counters go back by a few,
+// arrivals do not) in order of their exposure; returns how many. `frames`: unwrapped.
+std::int64_t put_in_order_of_exposure(std::vector<StampedFrame>& frames);
+
 // Whether the stamps count from 1970, as those of a clock that is set: of a computer, of a camera
 // under PTP, of librealsense's global time.
 bool counts_from_1970(std::span<const StampedFrame> frames);

@@ -87,7 +87,9 @@ FrameAccount frame_account(std::span<const StampedFrame> frames, bool counted,
 }
 
 FrameAccount frame_account(const RecordedStream& stream) {
-  return frame_account(unwrapped(stream.frames), stream.counted);
+  std::vector<StampedFrame> frames = unwrapped(stream.frames);
+  put_in_order_of_exposure(frames);
+  return frame_account(frames, stream.counted);
 }
 
 }  // namespace simbench::evaluation

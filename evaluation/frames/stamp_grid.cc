@@ -152,6 +152,21 @@ void place_by_phase(Frames frames, StampGrid& grid) {
   take_back_empty_points(grid.missing);
 }
 
+// From one interval to the next, a missing frame no more than a period.
+double correlation_of_intervals(Frames frames, double period_ms) {
+  double product = 0;
+  double square = 0;
+  double before = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const double deviation =
+        std::clamp(grid_interval_ms(frames, i) - period_ms, -period_ms, period_ms);
+    product += before * deviation;
+    square += deviation * deviation;
+    before = deviation;
+  }
+  return square > 0 ? product / square : 0;
+}
+
 void note_deviations(Frames frames, StampGrid& grid) {
   std::vector<double> deviations;
   std::vector<double> sizes;
@@ -229,10 +244,13 @@ std::optional<StampGrid> stamp_grid(std::span<const StampedFrame> frames,
   if (on_grid_share(intervals, grid.period_ms) >= kFewOnGrid) {
     place_by_intervals(frames, grid);
   } else {
+    constexpr double kTakenBack = -0.25;
     place_by_phase(frames, grid);
+    grid.exists = correlation_of_intervals(frames, grid.period_ms) < kTakenBack;
+    if (!grid.exists) grid.missing.assign(frames.size(), 0);
   }
   note_deviations(frames, grid);
-  find_steps(frames, grid);
+  if (grid.exists) find_steps(frames, grid);
   return grid;
 }
 

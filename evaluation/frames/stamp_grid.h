@@ -12,6 +12,10 @@
 // than that (of a program, with the jitter of its arrivals) are placed by the median phase of the
 // frames before them, so that no two errors add up.
 //
+// There is no grid where few intervals are whole periods and none takes back what the one before
+// was longer: jitter about a grid has a correlation of -0.5 from one interval to the next,
+// intervals that vary by themselves (automatic exposure, no trigger) have none.
+//
 // A step is a lasting move of the grid by less than a whole period: what comes after lies between
 // the points of what came before. It counts from a twentieth of a period on, from kStepSigmas times
 // the scatter, and from six times what the phase usually moves within some frames.
@@ -41,6 +45,7 @@ struct GridStep {
 
 struct StampGrid {
   double period_ms = 0;              // by the stamps' own clock
+  bool exists = true;                // else intervals vary by themselves: no point is empty
   std::vector<std::int64_t> points;  // of each frame, from 0 on
   // Deviations of the intervals from whole periods: their standard deviation, that of one stamp by
   // their median (which outliers leave alone), and the share of the intervals that deviate by less

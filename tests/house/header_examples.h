@@ -164,6 +164,7 @@ extern std::vector<std::optional<SweepScore>> scores;
 extern std::atomic<bool> interrupted;
 extern const std::vector<HostLog> logs;
 extern const CameraDelays delays, delays_a, delays_b;
+extern const StreamFacts facts_a, facts_b;
 extern const LoggedClock host_clock;
 extern const std::vector<DelayJump> jumps;
 extern const std::vector<FrameGap> gaps;

@@ -17,6 +17,7 @@ namespace simbench::evaluation {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -53,6 +54,16 @@ RecordedStream epoch_stream(const EpochCamera& camera) {
     stream.frames.push_back({.counter = static_cast<std::uint64_t>(i),
                              .sensor = from_ms(stamp_ms) + from_ms(camera.zero_ms),
                              .arrival = from_ms(arrival_ms) + from_ms(camera.recorder_zero_ms)});
+  }
+  return stream;
+}
+
+// Stamps of a clock that counts from when the camera was switched on.
+RecordedStream record_own_clock(const std::string& name, double ppm, std::uint32_t seed) {
+  RecordedStream stream = epoch_stream({.name = name, .delay_sd_ms = 0.3, .seed = seed});
+  const Nanoseconds begin = stream.frames.front().sensor;
+  for (StampedFrame& frame : stream.frames) {
+    frame.sensor = from_ms(7000.0 * seed + to_ms(frame.sensor - begin) * (1 + ppm * 1e-6));
   }
   return stream;
 }
@@ -303,6 +314,57 @@ TEST(Evidence, ABackEndStampTellsTheLinkFromTheProgram) {
   const Diagnosis found = diagnose(streams, {});
   EXPECT_THAT(named_kinds(found), Contains("a host_delay"));
   EXPECT_THAT(named_kinds(found), Contains("b link_delay"));
+}
+
+// A host's clock is slewed by 500 ppm for 20 s: both cameras' arrivals move alike.
+TEST(Evidence, ASlewOfTheHostsClockIsNoFaultOfTheCameras) {
+  std::vector<RecordedStream> streams = {record_own_clock("a", 20, 1),
+                                         record_own_clock("b", -35, 2)};
+  for (RecordedStream& stream : streams) {
+    for (StampedFrame& frame : stream.frames) {
+      const double since_ms = to_ms(frame.arrival) - kEpochMs;
+      frame.arrival += from_ms(std::clamp(since_ms - 40'000, 0.0, 20'000.0) * 500e-6);
+    }
+  }
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_EQ(found.verdict.status, SyncStatus::kWorks) << found.verdict.reason;
+  EXPECT_LT(found.verdict.resolution_ppm, 5);
+}
+
+TEST(Evidence, CamerasThatVaryByDesignHaveNoGrid) {
+  std::vector<RecordedStream> streams;
+  boost::random::mt19937 random(4);
+  boost::random::uniform_01<double> uniform;
+  for (const char* name : {"a", "b"}) {
+    RecordedStream stream = epoch_stream({.name = name, .frames = 1800});
+    double at_ms = 0;
+    for (StampedFrame& frame : stream.frames) {
+      at_ms += 25 + 35 * uniform(random);
+      const Nanoseconds delay = frame.arrival - frame.sensor;
+      frame.sensor = from_ms(kEpochMs) + from_ms(at_ms);
+      frame.arrival = frame.sensor + delay;
+    }
+    streams.push_back(stream);
+  }
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_EQ(found.verdict.status, SyncStatus::kCannotBeTold);
+  EXPECT_THAT(found.verdict.reason, HasSubstr("vary by themselves"));
+  EXPECT_THAT(named_kinds(found), ElementsAre("a no_grid", "b no_grid"));
+  EXPECT_EQ(diagnosed_camera(found, "a").facts.missing(), 0);
+}
+
+// A frame that is held back comes after the next one.
+TEST(Evidence, FramesOutOfOrderAreNotLost) {
+  std::vector<RecordedStream> streams = {epoch_stream({.name = "a", .delay_sd_ms = 0.1}),
+                                         epoch_stream({.name = "b", .delay_sd_ms = 0.1})};
+  for (std::size_t i = 100; i + 1 < 3600; i += 100) {
+    streams[1].frames[i].arrival += from_ms(34);
+    std::swap(streams[1].frames[i], streams[1].frames[i + 1]);
+  }
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_EQ(diagnosed_camera(found, "b").facts.out_of_order, 35);
+  EXPECT_EQ(diagnosed_camera(found, "b").facts.missing(), 0);
+  EXPECT_THAT(named_kinds(found), ElementsAre("b out_of_order"));
 }
 
 TEST(Evidence, TheVendorsWordsAreForTheVendorsCameras) {

@@ -44,7 +44,7 @@ TEST(ClockAnswer, CausesAreFromOneValueToAnother) {
   EXPECT_THAT(text, HasSubstr("No other one alone by 20 % or more. (Means over 2 seeds.)"));
   results.causes.found[0].largest_to_ms = 70'000;
   EXPECT_THAT(whole_text(clock_answer(results)),
-              HasSubstr("Without the step of a clock: largest error of a host from 140 s to 70.0 "
+              HasSubstr("Without the step of a clock: largest error of a host from 140 to 70.0 "
                         "s. (Means over 2 seeds.)"));
   EXPECT_THAT(text, Not(HasSubstr("Mostly constant")));
   EXPECT_THAT(text, Not(HasSubstr("Not tried")));
