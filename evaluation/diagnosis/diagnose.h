@@ -14,8 +14,8 @@
 // whose cameras do have one period), also at a whole multiple of the common period. The time they
 // are compared in is that of the stamps, if all count from one epoch (or boot) and run at one rate
 // against the arrivals, else that of the arrivals: of cameras on one host by their differences,
-// which a slewed clock leaves alone (common_mode.h). The largest set that agrees is the standard for
-// the others. It is of cameras whose periods are known well enough for the verdict "works"; if
+// which a slewed clock leaves alone (common_mode.h). The largest set that agrees is the standard
+// for the others. It is of cameras whose periods are known well enough for the verdict "works"; if
 // there is none, and some disagree all the same, of any. The verdict "works" needs a resolution of
 // 5 ppm: free-running cameras rarely agree that well, and two of them by chance once in ten.
 // Cameras of several hosts that are compared by arrivals can differ because the hosts' clocks do;

@@ -25,6 +25,8 @@ constexpr double kLeastWhole = 0.03;
 constexpr double kMostWhole = 0.15;
 constexpr double kWindowScatters = 1.4;
 constexpr double kMostPeriods = 1000;
+constexpr std::size_t kFewJumps = 3;
+constexpr std::size_t kFramesPerJump = 100;
 constexpr double kPassingS = 5;  // a step that is undone sooner is lateness
 constexpr double kLeastFutureMs = 5;
 constexpr double kLeastBurstMs = 10;
@@ -173,6 +175,8 @@ void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>&
                 StreamFacts& facts) {
   facts.jumps = find_jumps(frames, offsets, facts);
   drop_passing(facts.jumps, facts.period_ms);
+  // What jumps that often does not last: arrivals in batches, a delay that swings.
+  if (facts.jumps.size() > kFewJumps + frames.size() / kFramesPerJump) facts.jumps.clear();
   double taken_out = 0;
   std::size_t next = 0;
   for (std::size_t i = 0; i < facts.arrivals_ms.size(); ++i) {

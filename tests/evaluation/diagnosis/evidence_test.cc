@@ -367,6 +367,24 @@ TEST(Evidence, FramesOutOfOrderAreNotLost) {
   EXPECT_THAT(named_kinds(found), ElementsAre("b out_of_order"));
 }
 
+// Frames that wait for the fourth and come together: neither slips nor swaps.
+TEST(Evidence, BatchesAreNamed) {
+  std::vector<RecordedStream> streams = {epoch_stream({.name = "a"}), epoch_stream({.name = "b"})};
+  for (RecordedStream& stream : streams) {
+    for (std::size_t i = 0; i < 3600; ++i) {
+      const double waits_ms = static_cast<double>(3 - i % 4) * 1000 / 30;
+      stream.frames[i].arrival =
+          stream.frames[i].sensor + from_ms(30 + waits_ms + 0.1 * static_cast<double>(i % 4));
+    }
+  }
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_THAT(named_kinds(found), Contains("a batches"));
+  EXPECT_THAT(named_kinds(found), Contains("b batches"));
+  EXPECT_THAT(named_kinds(found), Not(Contains(HasSubstr("swapped"))));
+  EXPECT_THAT(named_kinds(found), Not(Contains(HasSubstr("period_slip"))));
+  EXPECT_THAT(found.findings.front().text, HasSubstr("75 % of its frames arrive together"));
+}
+
 TEST(Evidence, TheVendorsWordsAreForTheVendorsCameras) {
   std::vector<RecordedStream> streams = {epoch_stream({.name = "a"}), epoch_stream({.name = "b"})};
   EXPECT_THAT(named_kinds(diagnose(streams, {})), IsEmpty());
