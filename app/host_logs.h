@@ -1,5 +1,5 @@
 // Logs of hosts' clocks as a user names them: "HOST=FILE", or a file alone, of whatever form
-// `simbench stability` reads. Each series of a file is a log.
+// `simbench stability` reads. Each series of a file is a log; a table is one.
 //
 //   const app::HostLogs found = app::host_logs({"left=ptp4l.log", "tracking.log"});
 //   evaluation::DiagnoseOptions options;
