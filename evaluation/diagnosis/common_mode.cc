@@ -43,6 +43,7 @@ std::vector<double> window_phases(const StreamFacts& camera, double period_ms,
     phases[window].push_back(since_ms - static_cast<double>(camera.periods[i]) * period_ms);
   }
   std::vector<double> medians;
+  medians.reserve(kWindows);
   for (std::vector<double>& of_window : phases) {
     medians.push_back(of_window.size() < kFewestInWindow ? kNan : median(std::move(of_window)));
   }

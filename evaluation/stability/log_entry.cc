@@ -53,7 +53,7 @@ std::optional<WrittenTime> syslog_time_in(std::string_view text) {
       std::chrono::month(static_cast<unsigned>(month - kMonths.begin()) + 1),
       std::chrono::day(*day)};
   if (!date.ok()) return std::nullopt;
-  const Nanoseconds since = std::chrono::sys_days(date).time_since_epoch() + *time;
+  const Nanoseconds since = std::chrono::sys_days{date}.time_since_epoch() + *time;
   return WrittenTime{.at_s = to_seconds(since), .has_year = false};
 }
 
