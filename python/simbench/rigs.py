@@ -77,7 +77,7 @@ class Diagnosis:
 
     @property
     def verdict(self) -> str:
-        """"works", "does_not_work" or "cannot_be_told"."""
+        """"works", "works_with_offset", "slips", "does_not_work" or "cannot_be_told"."""
         return str(self._data["verdict"]["status"])
 
     @property

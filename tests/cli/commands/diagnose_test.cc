@@ -119,6 +119,35 @@ TEST_F(DiagnoseCommand, AClockLogThatDoesNotFitIsNamed) {
   EXPECT_THAT(none.err, HasSubstr("absent.log"));
 }
 
+// PTP looks good on both hosts, and the maps are blurry: the exposures are 5.2 ms apart.
+TEST_F(DiagnoseCommand, ClocksThatAreLockedAreNotTheCauseOfExposuresApart) {
+  std::string rig = "camera,host,seq,stamp_ms,arrival_ms\n";
+  for (int i = 0; i < 1800; ++i) {
+    const double ms = 1.7e12 + i * 1000.0 / 30;
+    const double late_ms = 20 + i * 7919 % 97 * 0.01;
+    rig += fmt::format("left,A,{},{:.3f},{:.3f}\n", i, ms, ms + late_ms);
+    rig += fmt::format("right,B,{},{:.3f},{:.3f}\n", i, ms + 5.2, ms + 5.2 + late_ms);
+  }
+  const auto log = [this](const std::string& host) {
+    std::string text;
+    for (int s = 0; s < 40; ++s) {
+      text += fmt::format(
+          "2023-11-14T22:13:{:02}+00:00 {} ptp4l: [{}.5] master offset {} s2 freq +9 path delay "
+          "90\n",
+          20 + s, host, 5000 + s, (s * 7919 % 97 - 48) * 100);
+    }
+    return file(host + ".log", text);
+  };
+  const ProgramResult result =
+      run({"diagnose", file("rig.csv", rig), "--columns",
+           "sensor=stamp_ms:ms,arrival=arrival_ms:ms,counter=seq,camera=camera,host=host",
+           "--clock-log", log("A"), "--clock-log", log("B")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string lead = result.out.substr(0, result.out.find("\nSlips:"));
+  EXPECT_THAT(lead, HasSubstr("with a constant offset"));
+  EXPECT_THAT(lead, HasSubstr("the clocks are not the cause"));
+}
+
 TEST_F(DiagnoseCommand, ColumnsBesideStampsAreFound) {
   std::string text = "camera,seq,stamp_ms,arrival_ms,exposure_us\n";
   for (int i = 0; i < 1800; ++i) {
