@@ -206,9 +206,22 @@ void add_load(CameraFindings& found) {
   }
 }
 
+void add_temperature(CameraFindings& found) {
+  constexpr double kLeastSpanC = 3;
+  const ColumnRange& temperature = found.camera.facts.columns.temperature_c;
+  if (!(temperature.high - temperature.low > kLeastSpanC)) return;
+  found.add(
+      {.name = "temperature", .harm = Harm::kNote, .certainty = FindingCertainty::kPossible},
+      fmt::format("its temperature goes from {:.1f} to {:.1f} degrees Celsius: the rate of its "
+                  "clock moves with it, by up to some tenths of a ppm a degree",
+                  temperature.low, temperature.high),
+      "record when it is warm");
+}
+
 }  // namespace
 
 void add_frame_findings(CameraFindings& found) {
+  add_temperature(found);
   add_lost(found);
   add_delivery(found);
   add_backend(found);

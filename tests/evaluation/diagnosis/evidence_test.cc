@@ -292,10 +292,14 @@ TEST(Evidence, ExposuresAreLookedAt) {
                                          epoch_stream({.name = "c"})};
   for (std::size_t i = 0; i < 3600; ++i) {
     streams[0].columns.exposure_us.push_back(8000);
+    streams[0].columns.temperature_c.push_back(30 + static_cast<double>(i) / 400);
+    streams[1].columns.temperature_c.push_back(40);
     streams[1].columns.exposure_us.push_back(2000 + static_cast<double>(i));  // to 5.6 ms
     streams[2].columns.exposure_us.push_back(40'000);
   }
   const Diagnosis found = diagnose(streams, {});
+  EXPECT_THAT(named_kinds(found), Contains("a temperature"));
+  EXPECT_THAT(named_kinds(found), Not(Contains("b temperature")));
   EXPECT_THAT(named_kinds(found), Contains("b auto_exposure"));
   EXPECT_THAT(named_kinds(found), Contains("c exposure_too_long"));
   EXPECT_THAT(named_kinds(found), Contains("c exposures_differ"));
