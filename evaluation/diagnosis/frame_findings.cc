@@ -213,7 +213,7 @@ void add_temperature(CameraFindings& found) {
   found.add(
       {.name = "temperature", .harm = Harm::kNote, .certainty = FindingCertainty::kPossible},
       fmt::format("its temperature goes from {:.1f} to {:.1f} degrees Celsius: the rate of its "
-                  "clock moves with it, by up to some tenths of a ppm a degree",
+                  "clock moves with it",
                   temperature.low, temperature.high),
       "record when it is warm");
 }
