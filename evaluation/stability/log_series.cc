@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "evaluation/stability/log_entry.h"
 #include "recording/counted.h"
 #include "recording/text_fields.h"
 
