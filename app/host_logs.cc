@@ -29,7 +29,7 @@ HostLogs host_logs(const std::vector<std::string>& given) {
     for (const std::string& series : series_of(file)) {
       evaluation::ClockLog log = evaluation::read_clock_log(file, {.series = series});
       found.notes.insert(found.notes.end(), log.notes.begin(), log.notes.end());
-      found.logs.push_back({.host = host, .log = std::move(log), .zero_s = {}});
+      found.logs.push_back({.host = host, .log = std::move(log)});
     }
   }
   return found;

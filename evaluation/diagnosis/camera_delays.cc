@@ -1,7 +1,6 @@
 #include "evaluation/diagnosis/camera_delays.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -13,24 +12,13 @@ namespace simbench::evaluation {
 namespace {
 
 constexpr std::size_t kFewestDelays = 30;
-constexpr Nanoseconds kUnsteadyStart = std::chrono::seconds(5);
-constexpr Nanoseconds kSteadyFrom = std::chrono::seconds(20);
 constexpr double kLikeRates = 0.05;
-constexpr double kDeviationOfNormal = 1.4826;
 constexpr double kNoisesOfJump = 10;  // of a jump
 constexpr double kLeastJumpMs = 0.5;
 constexpr std::size_t kMostBeside = 15;  // frames on either side of a jump
 constexpr std::size_t kLeastBeside = 5;
 constexpr double kBusyS = 5;      // a delay that is undone sooner is lateness
 constexpr double kUndone = 0.25;  // of the jump: what may remain of it
-
-std::size_t first_steady(std::span<const StampedFrame> frames) {
-  const Nanoseconds begin = frames.front().arrival;
-  if (frames.back().arrival - begin < kSteadyFrom) return 0;
-  const auto first = std::ranges::find_if(
-      frames, [begin](const StampedFrame& f) { return f.arrival - begin >= kUnsteadyStart; });
-  return static_cast<std::size_t>(first - frames.begin());
-}
 
 std::vector<double> successive_differences(std::span<const double> values) {
   std::vector<double> found;
@@ -61,12 +49,6 @@ void drop_busy_times(std::vector<DelayJump>& jumps) {
 
 }  // namespace
 
-double robust_deviation(std::vector<double> values) {
-  const double middle = median(values);
-  for (double& value : values) value = std::abs(value - middle);
-  return kDeviationOfNormal * median(std::move(values));
-}
-
 std::optional<CameraDelays> camera_delays(const RecordedStream& stream) {
   if (stream.frames.size() < kFewestDelays || has_one_clock(stream.frames)) return std::nullopt;
   const std::vector<StampedFrame> all = unwrapped(stream.frames);
@@ -74,8 +56,9 @@ std::optional<CameraDelays> camera_delays(const RecordedStream& stream) {
                      .host = stream.host,
                      .stream = stream.stream,
                      .stamped_by_host = stream.stamped_by_host,
-                     .left_out = first_steady(all)};
-  const std::span<const StampedFrame> frames = std::span(all).subspan(found.left_out);
+                     .left_out = 0};
+  const std::span<const StampedFrame> frames = without_unsteady_start(all);
+  found.left_out = all.size() - frames.size();
   if (frames.size() < kFewestDelays) return std::nullopt;
   if (counts_from_1970(frames)) found.stamp_ms = to_ms(frames.front().sensor);
   std::vector<double> arrival_ms;

@@ -54,8 +54,4 @@ std::vector<DelayJump> delay_jumps(const CameraDelays& delays);
 // The smallest jump that shows in the camera's arrivals.
 double smallest_jump_ms(const CameraDelays& delays);
 
-// 1.4826 times the median absolute distance from the median: the standard deviation of normal
-// noise, whatever a few outliers do. NaN without values.
-double robust_deviation(std::vector<double> values);
-
 }  // namespace simbench::evaluation

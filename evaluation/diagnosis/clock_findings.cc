@@ -215,8 +215,7 @@ class ClockTeller {
     } else if (!clock.from_1970 && arrivals_from_1970) {
       say("log_from_boot", clock.host, 0.4,
           fmt::format("{} counts from the boot of its host, the arrivals from 1970, and no step of "
-                      "it is a jump of theirs: {}; say when the host booted (btime of "
-                      "/proc/stat){}",
+                      "it is a jump of theirs: {}; take it with dates (journalctl -o short-iso){}",
                       log_named(clock), both, still_shown(clock)));
     } else {
       say("no_common_time", clock.host, 0.4,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -64,18 +63,25 @@ std::vector<PairDiagnosis> pairs_of(const std::vector<RecordedStream>& streams,
   return pairs;
 }
 
-// The grid of each kind of stream that its steadiest camera shows: that of the others, which may
-// have too few frames to show it.
-std::map<std::string, double> common_grids_ms(const std::vector<RecordedStream>& streams) {
-  std::map<std::string, double> grids;
-  std::map<std::string, double> shares;
-  for (const RecordedStream& stream : streams) {
-    const std::optional<StampGrid> grid = stamp_grid(unwrapped(stream.frames));
-    if (!grid || grid->on_grid_share <= shares[stream.stream]) continue;
-    shares[stream.stream] = grid->on_grid_share;
-    grids[stream.stream] = grid->period_ms;
+// A camera whose own intervals show no grid may have too few frames of that of the others, which
+// the steadiest one of its kind shows.
+void place_on_others_grid(const std::vector<RecordedStream>& streams, Diagnosis& diagnosis) {
+  const auto steadiness = [](const CameraDiagnosis& camera) {
+    const double share = camera.facts.on_grid_share;
+    return std::isnan(share) ? -1 : share;
+  };
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    CameraDiagnosis& camera = diagnosis.cameras[i];
+    if (!(camera.facts.on_grid_share < kMostOnGrid)) continue;
+    const CameraDiagnosis* steadiest = &camera;
+    for (const CameraDiagnosis& other : diagnosis.cameras) {
+      const bool same = other.stream == camera.stream;
+      if (same && steadiness(other) > steadiness(*steadiest)) steadiest = &other;
+    }
+    if (steadiest != &camera) {
+      camera.facts = stream_facts(streams[i], steadiest->facts.period_ms);
+    }
   }
-  return grids;
 }
 
 // Arrivals that count from an epoch are what stamps are compared with; else the first camera's
@@ -143,18 +149,15 @@ std::string called_camera(const std::string& name) {
 
 Diagnosis diagnose(const std::vector<RecordedStream>& streams, const DiagnoseOptions& options) {
   Diagnosis diagnosis;
-  const std::map<std::string, double> grids = common_grids_ms(streams);
   for (const RecordedStream& stream : streams) {
-    const auto grid = grids.find(stream.stream);
-    diagnosis.cameras.push_back(
-        {.camera = stream.camera,
-         .host = options.one_host ? "" : stream.host,
-         .stream = stream.stream,
-         .facts =
-             stream_facts(stream, grid == grids.end() ? std::nullopt : std::optional(grid->second)),
-         .scale = {},
-         .standing = {}});
+    diagnosis.cameras.push_back({.camera = stream.camera,
+                                 .host = options.one_host ? "" : stream.host,
+                                 .stream = stream.stream,
+                                 .facts = stream_facts(stream),
+                                 .scale = {},
+                                 .standing = {}});
   }
+  place_on_others_grid(streams, diagnosis);
   note_scales(diagnosis);
   const std::vector<std::string> kinds = kinds_of(streams);
   for (const std::string& kind : kinds) {

@@ -341,8 +341,7 @@ LoggedClock logged_clock(const HostLog& log, const TimeRange& of_arrivals) {
                     .file = read.path,
                     .series = read.series,
                     .format = read.format,
-                    .are_summaries = read.are_summaries(),
-                    .zero_s = log.zero_s};
+                    .are_summaries = read.are_summaries()};
   const std::vector<double> boots_s = boots_of(read, of_arrivals);
   clock.from_1970 = !boots_s.empty() ||
                     is_from_1970(1e-6 * static_cast<double>(read.points.front().time.count()));
@@ -380,10 +379,6 @@ bool may_be_one(const LoggedClock& clock, const LoggedChange& change, const Dela
 
 void place(LoggedClock& clock, const TimeRange& of_arrivals, std::span<const DelayJump> jumps) {
   const LogPlacer placer(clock, of_arrivals, jumps);
-  if (clock.zero_s) {
-    if (placer.shift(*clock.zero_s).share > 0) move_log(clock, LogPlacing::kByZero, *clock.zero_s);
-    return;
-  }
   const bool same_base = clock.from_1970 == is_from_1970(of_arrivals.first_s);
   if (same_base && clock.from_1970) {
     place_by_zone(clock, placer);

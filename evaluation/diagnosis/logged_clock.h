@@ -1,8 +1,8 @@
 // The clock of a host as its log has it, on the time scale of the recording's arrivals.
 //
 // Logs count from 1970 or from a boot (ptp4l[5374018.735]), arrivals from 1970, a boot or a zero of
-// their own. A log is placed, in this order:
-// - by a zero that is known (HostLog::zero_s);
+// their own. A log from a boot whose lines have dates (ClockLog::boots) counts from 1970 by these.
+// A log is placed, in this order:
 // - as it is, where both count from 1970 or neither does, and they overlap;
 // - by a time zone, where both count from 1970: the shift by a zone in use that brings the overlap;
 //  of several, the one that puts most steps of the log on jumps of the arrivals, then the longest
@@ -43,12 +43,9 @@ namespace simbench::evaluation {
 struct HostLog {
   std::string host{};  // empty: not said
   ClockLog log{};
-  // Where the log's zero is on the scale of the arrivals (for a log from the boot: the time of the
-  // boot, "btime" of /proc/stat), if it is known.
-  std::optional<double> zero_s{};
 };
 
-enum class LogPlacing : std::uint8_t { kNowhere, kAsIs, kByZero, kByZone, kBySteps };
+enum class LogPlacing : std::uint8_t { kNowhere, kAsIs, kByZone, kBySteps };
 
 // A step of the clock between two points, or a slew over several.
 //
@@ -86,11 +83,10 @@ struct LoggedClock {
   std::string series{};
   std::string format{};
   LogPlacing placing = LogPlacing::kNowhere;
-  double shift_s = 0;              // what was added to the log's times
-  bool other_zones_fit = false;    // as well as the one that was taken
-  bool from_1970 = false;          // the log's times
-  bool are_summaries = false;      // root mean squares without a sign: only within_s is of use
-  std::optional<double> zero_s{};  // HostLog::zero_s
+  double shift_s = 0;            // what was added to the log's times
+  bool other_zones_fit = false;  // as well as the one that was taken
+  bool from_1970 = false;        // the log's times
+  bool are_summaries = false;    // root mean squares without a sign: only within_s is of use
   std::optional<DaylightSaving> daylight_saving{};
   std::vector<double> time_s{};   // ascending, of the arrivals' scale once it is placed
   std::vector<double> error_s{};  // positive: ahead

@@ -10,8 +10,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kStartS = 5;
-constexpr double kLongS = 20;
 constexpr double kMostAtStart = 0.9;
 constexpr std::int64_t kFewestPlaces = 3;
 constexpr std::size_t kFewestDistances = 5;
@@ -46,12 +44,12 @@ LossPlaces loss_places(std::span<const StampedFrame> frames, std::span<const Fra
     if (missing == 0) continue;
     at_s.push_back(since_s(i));
     all += missing;
-    if (at_s.back() < kStartS) at_start += missing;
+    if (at_s.back() < to_seconds(kUnsteadyStart)) at_start += missing;
   }
   found.places = static_cast<std::int64_t>(at_s.size());
   if (all == 0) return found;
   found.pattern = LossPattern::kRandom;
-  const bool is_long = since_s(frames.size() - 1) > kLongS;
+  const bool is_long = since_s(frames.size() - 1) > to_seconds(kLongRecording);
   if (is_long && found.places >= kFewestPlaces &&
       static_cast<double>(at_start) >= kMostAtStart * static_cast<double>(all)) {
     found.pattern = LossPattern::kAtStart;

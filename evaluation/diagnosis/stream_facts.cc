@@ -1,11 +1,11 @@
 #include "evaluation/diagnosis/stream_facts.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,8 +15,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr Nanoseconds kWarmUp = std::chrono::seconds(5);
-constexpr Nanoseconds kLongRecording = std::chrono::seconds(20);
 constexpr std::ptrdiff_t kJumpWindow = 15;  // frames on either side
 constexpr std::ptrdiff_t kLeastJumpWindow = 5;
 // How far from a whole number of periods a slip may be: within what two medians of a window
@@ -47,14 +45,6 @@ std::int64_t count_wraps(std::span<const StampedFrame> frames) {
     if (in_register && frames[i - 1].sensor - frames[i].sensor > kRegister / 2) ++wraps;
   }
   return wraps;
-}
-
-std::span<const StampedFrame> without_warm_up(std::span<const StampedFrame> frames) {
-  if (frames.back().arrival - frames.front().arrival < kLongRecording) return frames;
-  const Nanoseconds begin = frames.front().arrival + kWarmUp;
-  const auto first = std::find_if(frames.begin(), frames.end(),
-                                  [begin](const StampedFrame& f) { return f.arrival >= begin; });
-  return frames.subspan(static_cast<std::size_t>(first - frames.begin()));
 }
 
 // After the stream's first arrival, also where the first frames are left out.
@@ -116,12 +106,9 @@ double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::p
 // The scatter of one value, by the differences of neighbours, to which no drift and no jump
 // matters.
 double scatter_of(const std::vector<double>& values) {
-  constexpr double kOfDifference = 1.4826 / 1.4142;
-  std::vector<double> sizes;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    sizes.push_back(std::abs(values[i] - values[i - 1]));
-  }
-  return sizes.empty() ? 0 : kOfDifference * median(std::move(sizes));
+  std::vector<double> differences;
+  for (std::size_t i = 1; i < values.size(); ++i) differences.push_back(values[i] - values[i - 1]);
+  return differences.empty() ? 0 : robust_deviation(std::move(differences)) / std::numbers::sqrt2;
 }
 
 // Steps of `offsets` (arrival - sensor stamp) that hold on for some frames.
@@ -232,7 +219,7 @@ std::vector<double> level_offsets(const StreamFacts& facts) {
   return offsets;
 }
 
-// Those far below nearly all others are stamps of the future, those far above are late frames.
+// Offsets far below nearly all others are stamps of the future, those far above are late frames.
 void note_delays(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
                  StreamFacts& facts) {
   if (offsets.size() < 2 * kJumpWindow) return;
@@ -390,7 +377,7 @@ StreamFacts stream_facts(const RecordedStream& stream, std::optional<double> oth
     facts.account = frame_account(all, stream.counted, *grid);
     facts.losses = loss_places(all, frame_gaps(all, stream.counted, *grid));
   }
-  const std::span<const StampedFrame> frames = without_warm_up(all);
+  const std::span<const StampedFrame> frames = without_unsteady_start(all);
   const std::optional<StampGrid> grid = stamp_grid(frames, other_period_ms);
   if (!grid) return facts;
   note_grid(frames, *grid, facts);

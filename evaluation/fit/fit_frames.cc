@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 
@@ -16,8 +15,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr Nanoseconds kFileWarmUp = std::chrono::seconds(5);
-constexpr Nanoseconds kLongFile = std::chrono::seconds(20);
 constexpr std::size_t kNearFrames = 15;  // of a step: its neighbourhood
 constexpr std::size_t kStartParts = 4;   // of a short file the first is left out
 
@@ -147,19 +144,19 @@ void drop_warm_up(std::span<const StampedFrame> delivered, Nanoseconds warm_up,
 // The start of a recording whose warm-up is not stated.
 void drop_start(std::span<const StampedFrame> delivered, UsableFrames& usable) {
   const std::size_t before = usable.frames.size();
-  if (delivered_at_s(delivered, delivered.back()) >= to_seconds(kLongFile)) {
-    drop_warm_up(delivered, kFileWarmUp, usable);
+  if (delivered_at_s(delivered, delivered.back()) >= to_seconds(kLongRecording)) {
+    drop_warm_up(delivered, kUnsteadyStart, usable);
     const std::size_t removed = before - usable.frames.size();
     if (removed == 0) return;
     usable.left_out.push_back(fmt::format("the first {:g} s ({}), in which cameras are unsteady",
-                                          to_seconds(kFileWarmUp), counted(removed, "frame")));
+                                          to_seconds(kUnsteadyStart), counted(removed, "frame")));
     return;
   }
   const std::size_t quarter = before / kStartParts;
   if (before - quarter < kFewestFrames) return;
   usable.left_out.push_back(fmt::format(
       "the first quarter ({}), in which cameras are unsteady: the file is shorter than {:g} s",
-      counted(quarter, "frame"), to_seconds(kLongFile)));
+      counted(quarter, "frame"), to_seconds(kLongRecording)));
   usable.frames.erase(usable.frames.begin(),
                       usable.frames.begin() + static_cast<std::ptrdiff_t>(quarter));
 }

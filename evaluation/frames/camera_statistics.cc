@@ -143,6 +143,14 @@ std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> recorded) {
   return frames;
 }
 
+std::span<const StampedFrame> without_unsteady_start(std::span<const StampedFrame> frames) {
+  const Nanoseconds begin = frames.front().arrival;
+  if (frames.back().arrival - begin < kLongRecording) return frames;
+  const auto first = std::ranges::find_if(
+      frames, [begin](const StampedFrame& f) { return f.arrival - begin >= kUnsteadyStart; });
+  return frames.subspan(static_cast<std::size_t>(first - frames.begin()));
+}
+
 std::int64_t put_in_order_of_exposure(std::vector<StampedFrame>& frames) {
   constexpr std::uint64_t kFarthest = 64;  // frames; more is a restart
   const auto overtaken = [&frames](std::size_t i, std::size_t before) {

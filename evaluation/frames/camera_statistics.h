@@ -13,6 +13,7 @@
 //   print(found.drift_ppm, found.excess.p99_ms);
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -68,6 +69,12 @@ std::vector<std::string> doubts_of(const RecordedStream& stream);
 // Returns the frames with sensor stamps that continue where the 32-bit microsecond register wraps
 // (half range rule: late frames are no wrap). Stamps beyond the register's range stay as they are.
 std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
+
+// Cameras are unsteady at first: so much of a recording that is long enough is left out.
+inline constexpr Nanoseconds kUnsteadyStart = std::chrono::seconds(5);
+inline constexpr Nanoseconds kLongRecording = std::chrono::seconds(20);
+// Frames in order of delivery, at least one; by their arrivals.
+std::span<const StampedFrame> without_unsteady_start(std::span<const StampedFrame> frames);
 
 // Puts frames that were delivered after later ones (their stamps and counters go back by a few,
 // arrivals do not) in order of their exposure; returns how many. `frames`: unwrapped.

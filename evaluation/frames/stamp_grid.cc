@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kOnGrid = 0.1;  // of a period
 constexpr double kFewOnGrid = 0.8;
-constexpr double kMostOnGrid = 0.9;
 constexpr int kLeastFraction = 4;
 constexpr double kNearOther = 0.02;
 constexpr std::size_t kLongestPeriodSpan = 30;
@@ -23,7 +22,6 @@ constexpr double kMissingFrom =
 constexpr std::size_t kPhaseFrames = 15;
 constexpr std::size_t kLeastPhaseFrames = 5;
 constexpr double kLeastStep = 0.05;  // of a period
-constexpr double kNormalMad = 1.4826;
 
 using Frames = std::span<const StampedFrame>;
 
@@ -180,7 +178,7 @@ void note_deviations(Frames frames, StampGrid& grid) {
     if (whole > 0 && sizes.back() < kOnGrid * grid.period_ms) ++on_grid;
   }
   grid.interval_jitter_ms = standard_deviation(deviations);
-  grid.scatter_ms = kNormalMad * median(std::move(sizes)) / std::sqrt(2.0);
+  grid.scatter_ms = kSigmasOfMedian * median(std::move(sizes)) / std::sqrt(2.0);
   grid.on_grid_share = static_cast<double>(on_grid) / static_cast<double>(deviations.size());
 }
 
@@ -208,7 +206,7 @@ double usual_move_ms(const std::vector<double>& residuals, double period_ms) {
                                                 median_of_stretch(residuals, i - kPhaseFrames, i),
                                             period_ms)));
   }
-  return moves.empty() ? 0 : kNormalMad * median(std::move(moves));
+  return moves.empty() ? 0 : kSigmasOfMedian * median(std::move(moves));
 }
 
 void find_steps(Frames frames, StampGrid& grid) {

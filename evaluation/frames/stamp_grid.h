@@ -37,6 +37,7 @@
 namespace simbench::evaluation {
 
 inline constexpr double kStepSigmas = 3;
+inline constexpr double kMostOnGrid = 0.9;  // of the intervals: a grid that is shown
 
 struct GridStep {
   std::size_t frame = 0;  // the first one after it

@@ -30,7 +30,7 @@ struct WrittenTime {
 };
 inline constexpr int kYearOfSyslog = 2024;  // has a 29 February
 std::optional<WrittenTime> written_time_in(std::string_view text);
-// The same day and time of another year.
+// Moves a time to the same day and time of another year.
 double in_year(double at_s, int year);
 
 class JournalText {

@@ -283,9 +283,7 @@ std::size_t start_of(std::span<const ClockLogPoint> points) {
     second_half.push_back(point.error_s);
   }
   const double middle_s = median(second_half);
-  for (double& x : second_half) x = std::abs(x - middle_s);
-  const double normal = 1.4826;  // a standard deviation in median absolute distances
-  const double limit_s = kStartScatters * normal * median(std::move(second_half));
+  const double limit_s = kStartScatters * robust_deviation(std::move(second_half));
   std::size_t settled = 0;
   for (std::size_t i = 0; i < points.size() / 2 + kSettledPoints; ++i) {
     settled = std::abs(points[i].error_s - middle_s) <= limit_s ? settled + 1 : 0;

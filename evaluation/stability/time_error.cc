@@ -13,9 +13,8 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kSigmasOfMedian = 1.4826;  // of a normal distribution
-constexpr std::size_t kNeighbours = 2;      // differences on either side
-constexpr double kRounding = 1e-14;         // of a time error, far less than any that is meant
+constexpr std::size_t kNeighbours = 2;  // differences on either side
+constexpr double kRounding = 1e-14;     // of a time error, far less than any that is meant
 
 double time_of(const TimeErrorSeries& series, const TimeErrorPiece& piece, std::size_t i) {
   return piece.start_s + static_cast<double>(i) * series.interval_s;

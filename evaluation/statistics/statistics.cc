@@ -117,6 +117,12 @@ double standard_deviation(std::span<const double> values) {
   return values.size() < 2 ? kNan : std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
+double robust_deviation(std::vector<double> values) {
+  const double middle = median(values);
+  for (double& value : values) value = std::abs(value - middle);
+  return kSigmasOfMedian * median(std::move(values));
+}
+
 double student_t_exceeded(double tail, double degrees_of_freedom) {
   const boost::math::students_t_distribution<double, InDouble> student(degrees_of_freedom);
   return boost::math::quantile(boost::math::complement(student, tail));

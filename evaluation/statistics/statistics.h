@@ -51,6 +51,12 @@ std::size_t count_of_existing(std::span<const double> values);
 double mean_of(std::span<const double> values);
 double standard_deviation(std::span<const double> values);
 
+// A standard deviation in median absolute distances, of a normal distribution.
+inline constexpr double kSigmasOfMedian = 1.4826;
+// kSigmasOfMedian times the median absolute distance from the median: the standard deviation of
+// normal noise, whatever a few outliers do. NaN without values.
+double robust_deviation(std::vector<double> values);
+
 // What Student's t of so many degrees of freedom (above 0) exceeds with the probability `tail`.
 double student_t_exceeded(double tail, double degrees_of_freedom);
 

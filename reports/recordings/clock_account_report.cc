@@ -52,8 +52,6 @@ std::string log_placed_text(const LoggedClock& clock) {
   switch (clock.placing) {
     case LogPlacing::kAsIs:
       return "as it is";
-    case LogPlacing::kByZero:
-      return "by its zero";
     case LogPlacing::kByZone:
       return fmt::format("{:+.4g} h", clock.shift_s / 3600);
     case LogPlacing::kBySteps:
@@ -68,8 +66,6 @@ Json placed_json(LogPlacing placing) {
   switch (placing) {
     case LogPlacing::kAsIs:
       return "as_is";
-    case LogPlacing::kByZero:
-      return "zero";
     case LogPlacing::kByZone:
       return "zone";
     case LogPlacing::kBySteps:

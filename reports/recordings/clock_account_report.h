@@ -3,7 +3,7 @@
 //
 // JSON (what does not exist is null):
 //   {"hosts": [{"host", "file", "series", "format",
-//               "placed": "as_is" | "zero" | "zone" | "steps" | null, "shift_s",
+//               "placed": "as_is" | "zone" | "steps" | null, "shift_s",
 //               "daylight_saving_s", "points", "first_s", "last_s", "interval_s", "within_ms",
 //               "summaries", "changes": [{"at_s", "until_s", "by_ms", "slew", "lasts"}]}],
 //    "jumps": [{"host", "cameras", "at_s", "step_ms", "file", "log_step_ms"}],

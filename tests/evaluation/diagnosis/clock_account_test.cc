@@ -55,7 +55,7 @@ std::vector<RecordedStream> clocked_host(const ClockErrorS& error_s, double star
 }
 
 TEST(ClockAccount, HostsInTimeHaveNoFindings) {
-  const std::vector<HostLog> logs = {{"A", rig_log({}), {}}, {"B", rig_log({}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({})}, {"B", rig_log({})}};
   const ClockAccount account = clock_account(clocked_hosts(keeps_time, keeps_time), logs);
   EXPECT_THAT(account.findings, IsEmpty()) << testing::PrintToString(kinds_of_clocks(account));
   EXPECT_EQ(account.logs[0].placing, LogPlacing::kAsIs);
@@ -64,7 +64,7 @@ TEST(ClockAccount, HostsInTimeHaveNoFindings) {
 
 TEST(ClockAccount, NoFramesAndNoLogsAreNoError) {
   EXPECT_THAT(clock_account({}, {}).findings, IsEmpty());
-  const std::vector<HostLog> logs = {{"A", rig_log({}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({})}};
   EXPECT_THAT(kinds_of_clocks(clock_account({}, logs)), ElementsAre("log_of_no_host"));
   const std::vector<RecordedStream> empty = {{"x", "A", "Depth 0", {}}};
   EXPECT_THAT(clock_account(empty, logs).budgets, IsEmpty());
@@ -72,7 +72,7 @@ TEST(ClockAccount, NoFramesAndNoLogsAreNoError) {
 
 TEST(ClockAccount, AStepOfTheClockIsFoundInBoth) {
   const ClockErrorS step = step_at(41.2, -0.25);
-  const std::vector<HostLog> logs = {{"A", rig_log({.error_s = step}), {}}, {"B", rig_log({}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({.error_s = step})}, {"B", rig_log({})}};
   const ClockAccount account = clock_account(clocked_hosts(step, keeps_time), logs);
   ASSERT_THAT(account.matches, SizeIs(1));
   EXPECT_NEAR(account.jumps[account.matches[0].jump].jump.step_ms, -250, 0.1);
@@ -90,7 +90,7 @@ TEST(ClockAccount, AStepOfTheClockIsFoundInBoth) {
 }
 
 TEST(ClockAccount, AJumpThatTheLogLacksIsNamed) {
-  const std::vector<HostLog> logs = {{"A", rig_log({}), {}}, {"B", rig_log({}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({})}, {"B", rig_log({})}};
   const ClockAccount account = clock_account(clocked_hosts(step_at(30, 0.08), keeps_time), logs);
   EXPECT_THAT(clock_text_of(account, "unexplained_jump"),
               AllOf(HasSubstr("cameras x, y on host A jump by +80"), HasSubstr("no such step"),
@@ -99,13 +99,13 @@ TEST(ClockAccount, AJumpThatTheLogLacksIsNamed) {
 }
 
 TEST(ClockAccount, AStepThatNoCameraShowsIsNamed) {
-  const std::vector<HostLog> logs = {{"", rig_log({.error_s = step_at(30, 0.08)}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.error_s = step_at(30, 0.08)})}};
   const ClockAccount account = clock_account(clocked_host(keeps_time), logs);
   EXPECT_THAT(clock_text_of(account, "unseen_step"), HasSubstr("a step of +80"));
 }
 
 TEST(ClockAccount, ALogOfAnotherDayIsNamedWithBothRanges) {
-  const std::vector<HostLog> logs = {{"", rig_log({.start_s = kRigDayS - 3 * 86400}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.start_s = kRigDayS - 3 * 86400})}};
   const ClockAccount account = clock_account(clocked_host(keeps_time, kRigDayS), logs);
   EXPECT_THAT(clock_text_of(account, "log_of_another_day"),
               AllOf(HasSubstr("it has 2024-08-31 10:29:55 UTC to 2024-08-31 10:31:10 UTC"),
@@ -119,13 +119,13 @@ TEST(ClockAccount, LocalTimeIsTakenOff) {
   const ClockErrorS wave = [](double s) { return 2e-3 * std::sin(s / 3); };
   for (const double zone_h : {2.0, -7.0, 5.5, 5.75}) {
     const double start_s = kRigDayS + 3600 * zone_h;
-    const std::vector<HostLog> logs = {{"", rig_log({.start_s = start_s, .error_s = wave}), {}}};
+    const std::vector<HostLog> logs = {{"", rig_log({.start_s = start_s, .error_s = wave})}};
     const ClockAccount account = clock_account(clocked_host(wave, kRigDayS), logs);
     EXPECT_EQ(account.logs[0].placing, LogPlacing::kByZone);
     EXPECT_DOUBLE_EQ(account.logs[0].shift_s, -3600 * zone_h);
     EXPECT_THAT(kinds_of_clocks(account), IsSupersetOf({"log_in_local_time", "clocks_explain"}));
   }
-  const std::vector<HostLog> logs = {{"", rig_log({.start_s = kRigDayS + 7200}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.start_s = kRigDayS + 7200})}};
   EXPECT_THAT(
       clock_text_of(clock_account(clocked_host(keeps_time, kRigDayS), logs), "log_in_local_time"),
       HasSubstr("clock.csv is 2 h ahead of the arrivals, as local time is: taken off"));
@@ -136,7 +136,7 @@ TEST(ClockAccount, StepsTellTheZoneOfALongLog) {
   const ClockErrorS step = step_at(30, 0.25);
   const ClockRigLog log{
       .start_s = kRigDayS + 7200, .from_s = -20'000, .until_s = 100, .error_s = step};
-  const std::vector<HostLog> logs = {{"", rig_log(log), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log(log)}};
   const ClockAccount account = clock_account(clocked_host(step, kRigDayS), logs);
   EXPECT_DOUBLE_EQ(account.logs[0].shift_s, -7200);
   EXPECT_THAT(account.matches, SizeIs(1));
@@ -154,7 +154,7 @@ TEST(ClockAccount, DaylightSavingInsideALogIsUndone) {
       }
       point.time += Microseconds(std::llround(by_s * 1e6));
     }
-    const std::vector<HostLog> logs = {{"", log, {}}};
+    const std::vector<HostLog> logs = {{"", log}};
     const ClockAccount account = clock_account(clocked_host(wave, kRigDayS), logs);
     ASSERT_TRUE(account.logs[0].daylight_saving);
     EXPECT_DOUBLE_EQ(account.logs[0].daylight_saving->by_s, by_s);
@@ -166,9 +166,9 @@ TEST(ClockAccount, DaylightSavingInsideALogIsUndone) {
 }
 
 TEST(ClockAccount, HostsWithoutALogAndLogsWithoutAHostAreNamed) {
-  const std::vector<HostLog> logs = {{"", rig_log({.file = "logs/B.csv"}), {}},
-                                     {"C", rig_log({.file = "c.csv"}), {}},
-                                     {"", rig_log({.file = "some.csv"}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.file = "logs/B.csv"})},
+                                     {"C", rig_log({.file = "c.csv"})},
+                                     {"", rig_log({.file = "some.csv"})}};
   const ClockAccount account = clock_account(clocked_hosts(keeps_time, keeps_time), logs);
   EXPECT_EQ(account.logs[0].host, "B");
   EXPECT_FALSE(account.logs[1].has_host);
@@ -187,24 +187,25 @@ TEST(ClockAccount, HostsWithoutALogAndLogsWithoutAHostAreNamed) {
 TEST(ClockAccount, CamerasThatShareNoTimeWithTheLogAreNamed) {
   std::vector<RecordedStream> streams = clocked_host(keeps_time);
   streams.push_back(rig_recording({.name = "late", .start_s = 500}));
-  const std::vector<HostLog> logs = {{"", rig_log({}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({})}};
   EXPECT_THAT(clock_text_of(clock_account(streams, logs), "no_common_time"),
               HasSubstr("camera late shares no time with any log of the host"));
 }
 
 TEST(ClockAccount, ALogFromTheBootIsPlacedByItsStepsOrTheTimeOfTheBoot) {
   const ClockErrorS step = step_at(30, -0.25);
-  const ClockLog log = rig_log({.start_s = 5374018, .error_s = step});
+  ClockLog log = rig_log({.start_s = 5374018, .error_s = step});
   const std::vector<RecordedStream> streams = clocked_host(step, kRigDayS);
-  const std::vector<HostLog> plain_logs = {{"", log, {}}};
+  const std::vector<HostLog> plain_logs = {{"", log}};
   const ClockAccount by_steps = clock_account(streams, plain_logs);
   EXPECT_EQ(by_steps.logs[0].placing, LogPlacing::kBySteps);
   EXPECT_NEAR(by_steps.logs[0].shift_s, kRigDayS - 5374018, 1);
-  const std::vector<HostLog> with_zero = {{"", log, kRigDayS - 5374018}};
-  const ClockAccount by_zero = clock_account(streams, with_zero);
-  EXPECT_EQ(by_zero.logs[0].placing, LogPlacing::kByZero);
-  EXPECT_THAT(by_zero.matches, SizeIs(1));
-  const std::vector<HostLog> quiet = {{"", rig_log({.start_s = 5374018}), {}}};
+  log.boots = {{.point = 0, .at_s = kRigDayS - 5374018}};
+  const std::vector<HostLog> dated_logs = {{"", log}};
+  const ClockAccount dated = clock_account(streams, dated_logs);
+  EXPECT_EQ(dated.logs[0].placing, LogPlacing::kAsIs);
+  EXPECT_THAT(dated.matches, SizeIs(1));
+  const std::vector<HostLog> quiet = {{"", rig_log({.start_s = 5374018})}};
   EXPECT_THAT(clock_text_of(clock_account(streams, quiet), "log_from_boot"),
               AllOf(HasSubstr("counts from the boot"), HasSubstr("still shown")));
 }
@@ -217,7 +218,7 @@ double pulled_back_s(double now_s) {
 
 TEST(ClockAccount, AnotherProgramThatSetsTheClockIsNamed) {
   const ClockRigLog log{.until_s = 130, .error_s = pulled_back_s};
-  const std::vector<HostLog> logs = {{"", rig_log(log), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log(log)}};
   std::vector<RecordedStream> streams = {
       rig_recording({.name = "x", .error_s = pulled_back_s, .frames = 3600}),
       rig_recording({.name = "y", .error_s = pulled_back_s, .frames = 3600})};
@@ -234,7 +235,7 @@ TEST(ClockAccount, StepsThatAQuickServoPullsBackAreAnotherProgram) {
     const double since_s = now_s - 20 * std::floor(now_s / 20);
     return 5e-3 * std::exp(-since_s);
   };
-  const std::vector<HostLog> logs = {{"", rig_log({.until_s = 130, .error_s = brief}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.until_s = 130, .error_s = brief})}};
   EXPECT_THAT(kinds_of_clocks(clock_account(clocked_host(brief), logs)),
               Contains("another_program"));
 }
@@ -245,7 +246,7 @@ TEST(ClockAccount, RampsBeyondACrystalsRateAreAnotherProgram) {
     const double since_s = now_s - 20 * std::floor(now_s / 20);
     return since_s < 8 ? 500e-6 * since_s : 0;
   };
-  const std::vector<HostLog> logs = {{"", rig_log({.until_s = 130, .error_s = ramps}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.until_s = 130, .error_s = ramps})}};
   const ClockAccount account = clock_account(clocked_host(ramps), logs);
   EXPECT_THAT(clock_text_of(account, "another_program"),
               AllOf(HasSubstr("slews the clock of host A"), HasSubstr("500 ppm")));
@@ -254,7 +255,7 @@ TEST(ClockAccount, RampsBeyondACrystalsRateAreAnotherProgram) {
 
 TEST(ClockAccount, DelaysThatFollowTheLogAreExplained) {
   const ClockErrorS wave = [](double s) { return 2e-3 * std::sin(s / 3); };
-  const std::vector<HostLog> logs = {{"A", rig_log({.error_s = wave}), {}}, {"B", rig_log({}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({.error_s = wave})}, {"B", rig_log({})}};
   const ClockAccount account = clock_account(clocked_hosts(wave, wave), logs);
   ASSERT_THAT(account.explanations, SizeIs(3));
   const ClockExplanation& follows = account.explanations[0];
@@ -270,8 +271,8 @@ TEST(ClockAccount, DelaysThatFollowTheLogAreExplained) {
 TEST(ClockAccount, HostsLockedAndExposuresApart) {
   std::vector<RecordedStream> streams = clocked_hosts(keeps_time, keeps_time);
   streams[2] = rig_recording({.name = "z", .host = "B", .phase_ms = 5.2});
-  const std::vector<HostLog> logs = {{"A", rig_log({.noise_s = 3e-6}), {}},
-                                     {"B", rig_log({.noise_s = 3e-6}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({.noise_s = 3e-6})},
+                                     {"B", rig_log({.noise_s = 3e-6})}};
   const ClockAccount account = clock_account(streams, logs);
   EXPECT_THAT(clock_text_of(account, "locked_but_apart"),
               AllOf(HasSubstr("the clocks of hosts B and A are within 0.01"),
@@ -280,8 +281,7 @@ TEST(ClockAccount, HostsLockedAndExposuresApart) {
 
 TEST(ClockAccount, ClocksApartAreTheSpread) {
   const ClockErrorS ahead = [](double) { return 5e-3; };
-  const std::vector<HostLog> logs = {{"A", rig_log({}), {}},
-                                     {"B", rig_log({.error_s = ahead}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({})}, {"B", rig_log({.error_s = ahead})}};
   const ClockAccount account = clock_account(clocked_hosts(keeps_time, ahead), logs);
   EXPECT_THAT(clock_text_of(account, "spread_by_clocks"),
               HasSubstr("hosts B and A are 5 ms (RMS) apart by their logs: more than 99 %"));
@@ -292,8 +292,8 @@ TEST(ClockAccount, ErrorsOfCardAndSystemClockAdd) {
   const ClockErrorS card = [](double s) { return 2e-3 * std::sin(s / 3); };
   const ClockErrorS system = [](double s) { return 1e-3 * std::sin(s / 5); };
   const ClockErrorS both = [=](double s) { return card(s) + system(s); };
-  const std::vector<HostLog> logs = {{"", rig_log({.format = "ptp4l", .error_s = card}), {}},
-                                     {"", rig_log({.format = "phc2sys", .error_s = system}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.format = "ptp4l", .error_s = card})},
+                                     {"", rig_log({.format = "phc2sys", .error_s = system})}};
   const ClockAccount account = clock_account(clocked_host(both), logs);
   EXPECT_GT(account.explanations[0].share, 0.9);
   EXPECT_NEAR(account.explanations[0].coefficient, 1, 0.05);
@@ -318,7 +318,7 @@ TEST(ClockAccount, LogsAreReadFromText) {
   }
   const std::vector<std::string> texts = {ptp4l, chrony, csv};
   for (const std::string& text : texts) {
-    const std::vector<HostLog> logs = {{"A", parse_clock_log(text, "A.log"), {}}};
+    const std::vector<HostLog> logs = {{"A", parse_clock_log(text, "A.log")}};
     const ClockAccount account = clock_account(clocked_host(step, kRigDayS), logs);
     EXPECT_TRUE(account.logs[0].is_placed()) << account.logs[0].format;
     ASSERT_THAT(account.matches, SizeIs(1)) << account.logs[0].format;
@@ -339,7 +339,7 @@ TEST(ClockAccount, ANoisyLogIsNoOtherProgram) {
       const double tail = noise(random) / std::max(0.05, std::abs(noise(random)));
       point.error_s = walk_s + 1e-4 * tail;
     }
-    const std::vector<HostLog> logs = {{"", log, {}}};
+    const std::vector<HostLog> logs = {{"", log}};
     const std::vector<std::string> kinds =
         kinds_of_clocks(clock_account(clocked_host(keeps_time), logs));
     found += static_cast<int>(std::ranges::count(kinds, "another_program"));
@@ -350,7 +350,7 @@ TEST(ClockAccount, ANoisyLogIsNoOtherProgram) {
 // chrony with a poll of 64 s beside a minute of frames.
 TEST(ClockAccount, ALogWithTooFewPointsIsNamed) {
   const ClockRigLog log{.from_s = -640, .until_s = 640, .interval_s = 64};
-  const std::vector<HostLog> logs = {{"", rig_log(log), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log(log)}};
   EXPECT_THAT(kinds_of_clocks(clock_account(clocked_host(keeps_time), logs)),
               ElementsAre("log_too_coarse"));
 }
@@ -359,7 +359,7 @@ TEST(ClockAccount, ALogOfOnePointIsNoError) {
   ClockLog log = rig_log({});
   log.points.resize(1);
   log.points[0].time = Microseconds(30'000'000);
-  const std::vector<HostLog> logs = {{"", log, {}}};
+  const std::vector<HostLog> logs = {{"", log}};
   EXPECT_TRUE(clock_account(clocked_host(keeps_time), logs).logs[0].is_placed());
 }
 
@@ -368,7 +368,7 @@ TEST(ClockAccount, StampsOfAHostDoNotShowItsClock) {
   const ClockErrorS step = step_at(30, 0.25);
   std::vector<RecordedStream> streams = clocked_host(step);
   for (RecordedStream& stream : streams) stream.stamped_by_host = true;
-  const std::vector<HostLog> logs = {{"", rig_log({.error_s = step}), {}}};
+  const std::vector<HostLog> logs = {{"", rig_log({.error_s = step})}};
   const ClockAccount account = clock_account(streams, logs);
   EXPECT_THAT(account.jumps, IsEmpty());
   EXPECT_THAT(account.explanations, IsEmpty());
@@ -380,7 +380,7 @@ TEST(ClockAccount, SummariesGiveTheLargestErrorOnly) {
   for (int i = 0; i < 60; ++i) {
     text += fmt::format("ptp4l[{}.250]: rms   67 max  1200 freq -30575 +/- 12 delay 10 +/- 0\n", i);
   }
-  const std::vector<HostLog> logs = {{"", parse_clock_log(text, "p.log"), {}}};
+  const std::vector<HostLog> logs = {{"", parse_clock_log(text, "p.log")}};
   const ClockAccount account = clock_account(clocked_host(keeps_time), logs);
   EXPECT_THAT(kinds_of_clocks(account), Contains("log_of_summaries"));
   EXPECT_THAT(account.explanations, IsEmpty());

@@ -27,9 +27,9 @@ ClockAccount account_of_rig() {
       rig_recording({.name = "x", .host = "A", .error_s = step}),
       rig_recording({.name = "y", .host = "A", .error_s = step}),
       rig_recording({.name = "z", .host = "B", .phase_ms = 5.2})};
-  const std::vector<HostLog> logs = {{"A", rig_log({.file = "a.log", .error_s = step}), {}},
-                                     {"B", rig_log({.file = "b.log"}), {}},
-                                     {"C", rig_log({.file = "c.log"}), {}}};
+  const std::vector<HostLog> logs = {{"A", rig_log({.file = "a.log", .error_s = step})},
+                                     {"B", rig_log({.file = "b.log"})},
+                                     {"C", rig_log({.file = "c.log"})}};
   return evaluation::clock_account(streams, logs);
 }
 
