@@ -89,7 +89,7 @@ const std::vector<CommandGroup>& command_groups() {
         cli::add_fit_command, cli::add_convert_ibl_command}},
       {"Real rigs",
        {cli::add_keygen_command, cli::add_node_command, cli::add_validate_model_command,
-        cli::add_relay_command}},
+        cli::add_reality_command, cli::add_relay_command}},
       {"Scenarios and algorithms",
        {cli::add_list_command, cli::add_describe_command, cli::add_validate_command}},
       // Last: `manual` lists the commands before it.

@@ -32,7 +32,7 @@ std::string fill(std::string text, const HostPlaces& places) {
   const double correction_ppm = places.drift ? places.drift->ppb * 1e-3 : 0;
   const double error_ppm = places.drift ? places.drift->error_ppb * 1e-3 : 0;
   const std::pair<const char*, std::string> values[] = {
-      {"{master}", dotted(address_of(0))},
+      {"{master}", dotted(address_of(places.follows))},
       {"{address}", dotted(address_of(places.host))},
       {"{host}", std::to_string(places.host)},
       {"{interface}", places.interface},

@@ -1,6 +1,6 @@
 // The places in programs' commands, files and environment that differ from host to host.
 //
-//   {master}        the master's address
+//   {master}        the address of the host that this one follows, the master's own of the master
 //   {address}       the host's own
 //   {host}          its number, 0 for the master
 //   {interface}     its network interface
@@ -39,6 +39,7 @@ inline constexpr char kPlaceholders[] =
 
 struct HostPlaces {
   PeerId host = 0;
+  PeerId follows = 0;
   std::optional<StoredFrequency> drift{};
   const char* interface = "eth0";
 };

@@ -44,6 +44,8 @@ struct ClockRequest {
 class ClockSink {
  public:
   virtual ~ClockSink() = default;
+  // The master's own error, against true time, before each on_errors().
+  virtual void on_master(double /*error_s*/) {}
   // Every interval from true zero on: of each host, the first is the master with 0.
   virtual void on_errors(TrueTime at, std::span<const double> errors_s) = 0;
 };

@@ -42,4 +42,10 @@ const std::vector<BuiltinFile>& study_files();
 // scenarios/studies/schema.json.
 std::string_view study_schema_text();
 
+// The figures of real recordings in alphabetical order; their schema is not among them.
+const std::vector<BuiltinFile>& recording_files();
+
+// scenarios/reality/schema.json.
+std::string_view recording_schema_text();
+
 }  // namespace simbench::scenarios

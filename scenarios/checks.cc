@@ -13,6 +13,7 @@
 #include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
 #include "scenarios/frame_control_checks.h"
+#include "scenarios/load_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/published_checks.h"
 #include "scenarios/pulse_window.h"
@@ -170,6 +171,15 @@ void check_delay_law(const Scenario& scenario, const std::string& pointer, const
   if (law.common_share == 0 || law.common_time_ms > 0) return;
   fail_at(scenario, pointer + "/common_time_ms",
           "found 0 or nothing, allowed more than 0 where common_share is above 0");
+}
+
+void check_cpu_load(const Scenario& scenario) {
+  if (!scenario.hosts.cpu_load) return;
+  const CpuLoad& load = *scenario.hosts.cpu_load;
+  check_delay_law(scenario, "/hosts/cpu_load/cold_transmit", load.cold_transmit);
+  check_delay_law(scenario, "/hosts/cpu_load/cold_wake_up", load.cold_wake_up);
+  check_delay_law(scenario, "/hosts/cpu_load/wake_up", load.wake_up);
+  check_delay_law(scenario, "/hosts/cpu_load/receive", load.receive);
 }
 
 void check_stack(const Scenario& scenario) {
@@ -532,6 +542,8 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_switches(scenario);
   check_wifi(scenario);
   check_stack(scenario);
+  check_cpu_load(scenario);
+  check_load(scenario);
   check_streams(scenario);
   check_rates(scenario);
   check_shutters(scenario);

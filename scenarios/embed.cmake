@@ -1,5 +1,5 @@
-# Writes OUTPUT: the schemas, scenarios, profiles, parts and studies of FOLDER as the C++ source behind
-# scenarios/builtin_files.h. Run by the build whenever one of the files has changed.
+# Writes OUTPUT: the schemas, scenarios, profiles, parts, studies and real recordings of FOLDER as the
+# C++ source behind scenarios/builtin_files.h. Run by the build whenever one of the files has changed.
 
 # Sets `result` to an expression of the text, in literals below the 64 KiB that compilers must take.
 function(text_expression text result)
@@ -42,6 +42,7 @@ read_folder(${FOLDER}/cameras cameras camera_schema)
 read_folder(${FOLDER}/oscillators oscillators oscillator_schema)
 read_folder(${FOLDER}/parts parts part_schema)
 read_folder(${FOLDER}/studies studies study_schema)
+read_folder(${FOLDER}/reality recordings recording_schema)
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 #include "scenarios/builtin_files.h"
@@ -102,6 +103,17 @@ const std::vector<BuiltinFile>& study_files() {
 
 std::string_view study_schema_text() {
   static const std::string text = @study_schema@;
+  return text;
+}
+
+const std::vector<BuiltinFile>& recording_files() {
+  static const std::vector<BuiltinFile> files = {
+@recordings@  };
+  return files;
+}
+
+std::string_view recording_schema_text() {
+  static const std::string text = @recording_schema@;
   return text;
 }
 

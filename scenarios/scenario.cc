@@ -8,6 +8,10 @@
 
 namespace simbench::scenarios {
 
+std::uint32_t followed_host(const Hosts& hosts, std::uint32_t host) {
+  return hosts.follows.empty() ? 0 : static_cast<std::uint32_t>(hosts.follows[host]);
+}
+
 std::string program_name(const HostPrograms::Command& command) {
   const std::string& program = command.front();
   return program.substr(program.rfind('/') + 1);

@@ -43,6 +43,9 @@ inline double Stream::image_bytes() const {
 inline bool ClockPoll::is_on() const { return interval_ms > 0; }
 inline bool AutoExposure::is_on() const { return step_interval_exponential_ms > 0; }
 
+// The host that this one follows; 0, the master, of the master itself.
+std::uint32_t followed_host(const Hosts& hosts, std::uint32_t host);
+
 // The last part of the path: "chronyd".
 std::string program_name(const HostPrograms::Command& command);
 

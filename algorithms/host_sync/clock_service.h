@@ -1,7 +1,8 @@
 // A clock service: a host_sync that has run for `service_time` when the capture starts, and goes on
 // during it.
 //
-// Its two sides are coroutines that need not end: one on the master, one on each slave.
+// Its two sides are coroutines that need not end: one on the master, one on each slave; and, where
+// hosts may stand in a chain, a third on a host that has both sides.
 //
 //   struct TimeSettings {
 //     Nanoseconds service_time = from_ms(60e3);
@@ -20,8 +21,11 @@
 
 namespace simbench {
 
+template <class Settings>
+using RelayTime = Task<void> (*)(Host&, PeerId master, std::vector<PeerId> slaves, Settings);
+
 template <class Settings, Task<void> (*serve)(Host&, std::vector<PeerId>, Settings),
-          Task<void> (*follow)(Host&, PeerId, Settings)>
+          Task<void> (*follow)(Host&, PeerId, Settings), RelayTime<Settings> relay = nullptr>
 class ClockService : public HostSync {
  public:
   explicit ClockService(Settings settings) : settings_(std::move(settings)) {}
@@ -31,6 +35,14 @@ class ClockService : public HostSync {
   }
   Task<void> run_slave(Host& host, PeerId master) override {
     return follow(host, master, settings_);
+  }
+  bool can_relay() const override { return relay != nullptr; }
+  Task<void> run_relay(Host& host, PeerId master, std::vector<PeerId> slaves) override {
+    if constexpr (relay != nullptr) {
+      return relay(host, master, std::move(slaves), settings_);
+    } else {
+      return HostSync::run_relay(host, master, std::move(slaves));
+    }
   }
 
  private:

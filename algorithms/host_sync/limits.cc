@@ -23,6 +23,7 @@ class NoHostSync : public HostSync {
   explicit NoHostSync(InitialClocks initial_clocks) : initial_clocks_(initial_clocks) {}
   InitialClocks initial_clocks() const override { return initial_clocks_; }
   bool is_idle() const override { return true; }
+  bool can_relay() const override { return true; }
   Task<void> run_master(Host& /*host*/, std::vector<PeerId> /*slaves*/) override { co_return; }
   Task<void> run_slave(Host& /*host*/, PeerId /*master*/) override { co_return; }
 

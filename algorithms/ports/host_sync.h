@@ -9,6 +9,9 @@
 //  - a service (NTP and its kin): it runs for warm_up() before the capture and goes on during it;
 //    its coroutines need not return.
 //
+// Hosts may stand in a chain or a tree: a host then follows one host and serves others, which is
+// run_relay()'s part. A protocol that cannot do so has can_relay() false.
+//
 // Failures are outcomes, not exceptions: report them with Host::report_outcome, once per slave,
 // with a message that says what would help.
 #pragma once
@@ -42,6 +45,12 @@ class HostSync {
   virtual std::vector<std::string> notes() const { return {}; }
   virtual Task<void> run_master(Host& host, std::vector<PeerId> slaves) = 0;
   virtual Task<void> run_slave(Host& host, PeerId master) = 0;
+  // Whether a host can follow one host and serve others.
+  virtual bool can_relay() const { return false; }
+  // A slave of `master` that serves `slaves`, where it can.
+  virtual Task<void> run_relay(Host& host, PeerId master, std::vector<PeerId> /*slaves*/) {
+    return run_slave(host, master);
+  }
 };
 
 }  // namespace simbench

@@ -61,6 +61,8 @@ void add_keygen_command(CommandLine& line);
 void add_node_command(CommandLine& line);
 // The real-network experiment beside its simulation.
 void add_validate_model_command(CommandLine& line);
+// Measured figures of real rigs beside what the bench predicts of them.
+void add_reality_command(CommandLine& line);
 // The network of a scenario between nodes on this machine.
 void add_relay_command(CommandLine& line);
 

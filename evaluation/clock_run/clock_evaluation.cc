@@ -13,6 +13,7 @@
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/rows.h"
+#include "evaluation/statistics/statistics.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -70,6 +71,17 @@ ClockSpan span_of(const Scenario& scenario, const ClockOptions& options) {
           .hosts = static_cast<std::size_t>(scenario.hosts.count)};
 }
 
+HostTe median_of(const std::vector<HostTe>& seeds) {
+  const auto median_te = [&seeds](double HostTe::*value) {
+    std::vector<double> values;
+    for (const HostTe& seed : seeds) values.push_back(seed.*value);
+    return median(std::move(values));
+  };
+  return {.median_ms = median_te(&HostTe::median_ms),
+          .median_abs_ms = median_te(&HostTe::median_abs_ms),
+          .p95_abs_ms = median_te(&HostTe::p95_abs_ms)};
+}
+
 class ClockEvaluation {
  public:
   ClockEvaluation(const Scenario& scenario, const ClockSourceFactory& make_source,
@@ -111,6 +123,7 @@ class ClockEvaluation {
   struct Scored {
     SeedScore seed;
     StabilityCurves curves;
+    HostTimeErrors hosts;
     std::optional<ClockReadings> readings;  // of the first seed
   };
 
@@ -146,6 +159,7 @@ class ClockEvaluation {
                         .trace_hash = cost.trace_hash,
                         .notes = host_sync->notes()};
     scored.curves = std::move(score.curves);
+    scored.hosts = {.to_truth = std::move(score.to_truth), .to_master = std::move(score.to_master)};
     if (seed == options_.first_seed) scored.readings = std::move(score.readings);
     return scored;
   }
@@ -162,19 +176,23 @@ class ClockEvaluation {
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.warnings = chosen_.left_out;
+    all.follows = scenario_.hosts.follows;
     RowSetting setting = row_setting(scenario_);
     setting.kind = ResultKind::kClockRuns;
     for (std::size_t pipeline = 0; pipeline < chosen_.choices.size(); ++pipeline) {
       std::vector<SeedScore> seeds;
       std::vector<StabilityCurves> curves;
+      std::vector<HostTimeErrors> hosts;
       for (std::size_t job = pipeline; job < jobs_.size(); job += chosen_.choices.size()) {
         results.performance.events += jobs_[job].seed.cost.events;
         results.performance.simulated_seconds += jobs_[job].seed.cost.simulated_seconds;
         seeds.push_back(std::move(jobs_[job].seed));
         curves.push_back(std::move(jobs_[job].curves));
+        hosts.push_back(std::move(jobs_[job].hosts));
       }
       all.readings.push_back(std::move(*jobs_[pipeline].readings));
       all.curves.push_back(pooled(curves));
+      all.hosts.push_back(std::move(hosts));
       results.rows.push_back(
           make_row(chosen_.choices[pipeline].pipeline, std::move(seeds), setting));
     }
@@ -193,6 +211,18 @@ class ClockEvaluation {
 };
 
 }  // namespace
+
+HostTimeErrors host_medians(const std::vector<HostTimeErrors>& seeds) {
+  HostTimeErrors medians;
+  for (const auto list : {&HostTimeErrors::to_truth, &HostTimeErrors::to_master}) {
+    for (std::size_t host = 0; host < (seeds.front().*list).size(); ++host) {
+      std::vector<HostTe> of_host;
+      for (const HostTimeErrors& seed : seeds) of_host.push_back((seed.*list)[host]);
+      (medians.*list).push_back(median_of(of_host));
+    }
+  }
+  return medians;
+}
 
 ClockResults evaluate_clocks(const Scenario& scenario, const ClockSourceFactory& make_source,
                              const ClockOptions& options, const Progress& progress) {

@@ -48,12 +48,23 @@ struct ClockOptions {
   const std::atomic<bool>* cancel = nullptr;
 };
 
+// By host, the master's first.
+struct HostTimeErrors {
+  std::vector<HostTe> to_truth{};
+  std::vector<HostTe> to_master{};
+};
+
 struct ClockResults {
   Results results;                        // of ResultKind::kClockRuns
   std::vector<StabilityCurves> curves{};  // by row
+  std::vector<std::vector<HostTimeErrors>> hosts{};  // by row and seed; empty: of an archive
+  std::vector<std::int64_t> follows{};    // whom each host follows; empty: all the master
   std::vector<ClockReadings> readings{};  // by row, of the first seed
   ClockCauses causes{};                   // of the best row, if somebody asked (clock_causes.h)
 };
+
+// Over the seeds, of which there is one at least.
+HostTimeErrors host_medians(const std::vector<HostTimeErrors>& seeds);
 
 using ClockSourceFactory = std::function<std::unique_ptr<ClockSource>()>;
 // For a scenario, which outlives it; called from worker threads.

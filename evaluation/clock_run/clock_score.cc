@@ -71,6 +71,17 @@ double spread_of(std::span<const double> errors_s) {
   return (*greatest - *least) * 1e3;
 }
 
+// Of the errors of a clock, in seconds.
+HostTe te_of(std::vector<double> errors_s) {
+  std::ranges::sort(errors_s);
+  HostTe te{.median_ms = 1e3 * quantile_of_sorted(errors_s, 0.5)};
+  for (double& error_s : errors_s) error_s = std::abs(error_s);
+  std::ranges::sort(errors_s);
+  te.median_abs_ms = 1e3 * quantile_of_sorted(errors_s, 0.5);
+  te.p95_abs_ms = 1e3 * quantile_of_sorted(errors_s, 0.95);
+  return te;
+}
+
 double largest_ms(std::span<const double> errors_s) {
   double largest = 0;
   for (const double error : errors_s) largest = std::max(largest, std::abs(error));
@@ -121,6 +132,7 @@ void ClockScorer::measure(std::span<const double> errors_s, double spread_ms) {
   for (std::size_t host = 0; host < errors_s.size(); ++host) {
     kept_.errors_s[host].push_back(errors_s[host]);
   }
+  master_s_.push_back(master_error_s_);
 }
 
 // Keeps every second reading from now on, and of those kept.
@@ -131,6 +143,7 @@ void ClockScorer::halve() {
   };
   every_second(spreads_ms_);
   for (std::vector<double>& errors_s : kept_.errors_s) every_second(errors_s);
+  every_second(master_s_);
   stride_ *= 2;
   kept_.interval_s *= 2;
 }
@@ -167,6 +180,11 @@ ClockScore ClockScorer::finish(std::uint64_t messages) {
   values.holdover_600_ms = holdover_600_ms_;
   if (last_apart_ && *last_apart_ <= kRecovery) values.recovery_s = exact_seconds(*last_apart_);
   values.packets_per_s = static_cast<double>(messages) / exact_seconds(span_.duration);
+  for (std::vector<double> errors_s : kept_.errors_s) {
+    score.to_master.push_back(te_of(errors_s));
+    for (std::size_t i = 0; i < errors_s.size(); ++i) errors_s[i] += master_s_[i];
+    score.to_truth.push_back(te_of(std::move(errors_s)));
+  }
   score.curves = curves_of(kept_);
   score.readings = std::move(kept_);
   return score;

@@ -9,6 +9,8 @@
 //   spread      largest minus smallest clock of all hosts, the master included
 //   holdover    largest |TE| of any slave 60 s and 600 s after the loss
 //   recovery    from the master's return until the spread stays within its largest while measured
+//   HostTe      quantiles in time of a host's error, against true time and against the master's
+//               clock
 //
 // A value that does not exist (never below, never recovered) is NaN. Deviations are the RMS over
 // the slaves, MTIE is the largest of any slave.
@@ -58,9 +60,19 @@ struct ClockReadings {
   std::vector<std::vector<double>> errors_s{};  // by host, the master's first
 };
 
+// The time errors of one clock while measured.
+struct HostTe {
+  double median_ms = kNan;  // signed
+  double median_abs_ms = kNan;
+  double p95_abs_ms = kNan;
+};
+
 struct ClockScore {
   MetricValues<double> values{};
   std::vector<double> host_errors_ms{};  // mean TE while measured, by host
+  // By host, the master's first: against true time, and against the master.
+  std::vector<HostTe> to_truth{};
+  std::vector<HostTe> to_master{};
   StabilityCurves curves{};
   ClockReadings readings{};
 };
@@ -70,6 +82,7 @@ class ClockScorer final : public ClockSink {
   // The span measured holds at least two readings.
   explicit ClockScorer(const ClockSpan& span);
 
+  void on_master(double error_s) override { master_error_s_ = error_s; }
   void on_errors(TrueTime at, std::span<const double> errors_s) override;
 
   // After the run, once. `messages`: those sent in `duration`.
@@ -81,7 +94,9 @@ class ClockScorer final : public ClockSink {
   void watch_loss(Nanoseconds since_loss, std::span<const double> errors_s, double spread_ms);
 
   ClockSpan span_;
+  double master_error_s_ = 0;
   ClockReadings kept_;
+  std::vector<double> master_s_;  // its error at each of these
   std::size_t stride_ = 1;
   std::size_t measured_ = 0;
   std::vector<double> spreads_ms_;  // while measured, up to kMostReadings, every stride_th

@@ -144,6 +144,27 @@ void check_can_be_made(const Scenario& scenario, const PipelineChoice& choice) {
   try_to_make(choice.gathering, GatheringSetup{.sources = 1, .period = period, .interval = period});
 }
 
+std::string stage_pointer(std::size_t pipeline, PipelineStage stage) {
+  return fmt::format("/pipelines/{}/{}", pipeline, name_of(stage));
+}
+
+// Hosts that follow another slave need a protocol whose slaves can serve.
+void check_relays(const Scenario& scenario, std::size_t index, const PipelineChoice& choice) {
+  const std::vector<std::int64_t>& follows = scenario.hosts.follows;
+  const bool is_star = std::ranges::all_of(follows, [](std::int64_t host) { return host == 0; });
+  if (is_star || !choice.host_sync.can_be_made() || choice.host_sync.make()->can_relay()) return;
+  std::vector<std::string> known;
+  for (const HostSyncEntry& entry : algorithms<HostSyncEntry>()) {
+    if (entry.make(check_parameters(entry.info.parameters, {}))->can_relay()) {
+      known.push_back(entry.info.name);
+    }
+  }
+  scenarios::fail_at(scenario, stage_pointer(index, PipelineStage::kHostSync),
+                     fmt::format("found \"{}\", whose slaves serve no others, where hosts follow "
+                                 "slaves (/hosts/follows); allowed: {}, or programs",
+                                 choice.pipeline.host_sync, fmt::join(known, ", ")));
+}
+
 // What the scenario lacks of an algorithm's need; empty if nothing.
 std::string lacking(const Scenario& scenario, Need need) {
   const scenarios::PulseLines& lines = scenario.hosts.pulse_lines;
@@ -180,10 +201,6 @@ std::string lacking(const Scenario& scenario, Need need) {
       return "";
   }
   return "";
-}
-
-std::string stage_pointer(std::size_t pipeline, PipelineStage stage) {
-  return fmt::format("/pipelines/{}/{}", pipeline, name_of(stage));
 }
 
 void check_needs(const Scenario& scenario, std::size_t pipeline, PipelineStage stage,
@@ -278,6 +295,7 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
       .scores_offline = needs_offline_amd(pipeline.name),
       .problem = problem};
   check_can_be_made(scenario, choice);
+  check_relays(scenario, index, choice);
   return choice;
 }
 

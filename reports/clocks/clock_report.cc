@@ -89,6 +89,26 @@ Table over_tau_table(const ClockResults& results, const evaluation::ClockCurve& 
   return table;
 }
 
+// Where hosts stand in a chain, each slave has a line: errors add up along it.
+Table chain_table(const ClockResults& results) {
+  Table table({{"pipeline"},
+               {"host"},
+               {"follows"},
+               {"median TE ms"},
+               {"median |TE| ms"},
+               {"95 % |TE| ms"}});
+  for (std::size_t row = 0; row < results.results.rows.size(); ++row) {
+    const std::vector<evaluation::HostTe> hosts =
+        evaluation::host_medians(results.hosts[row]).to_truth;
+    for (std::size_t host = 1; host < hosts.size(); ++host) {
+      table.add({results.results.rows[row].pipeline, std::to_string(host),
+                 std::to_string(results.follows[host]), number_text(hosts[host].median_ms),
+                 number_text(hosts[host].median_abs_ms), number_text(hosts[host].p95_abs_ms)});
+    }
+  }
+  return table;
+}
+
 std::vector<std::string> legend(const ClockResults& results) {
   std::vector<std::string> lines = {
       fmt::format("Hosts alone, without cameras, read once a second; measured from {} to {} s. A "
@@ -122,6 +142,9 @@ Document clock_document(const ClockResults& results, const std::string& summary)
   document.head.insert(document.head.end(), head.begin(), head.end());
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
+  if (!results.follows.empty() && !results.hosts.empty()) {
+    blocks.push_back({.heading = "Each host, against true time", .table = chain_table(results)});
+  }
   add(program_gap_block(results.results), blocks);
   add(notes_block(results.results), blocks);
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
@@ -138,6 +161,18 @@ Document clock_document(const ClockResults& results, const std::string& summary)
 }
 
 namespace {
+
+// Of the hosts from `first` on.
+Json host_errors_json(const std::vector<evaluation::HostTe>& hosts, std::size_t first) {
+  Json all = Json::array();
+  for (std::size_t host = first; host < hosts.size(); ++host) {
+    all.push_back({{"host", host},
+                   {"median_te_ms", hosts[host].median_ms},
+                   {"median_abs_te_ms", hosts[host].median_abs_ms},
+                   {"p95_abs_te_ms", hosts[host].p95_abs_ms}});
+  }
+  return all;
+}
 
 Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
   Json all = {{"pipeline", row.pipeline},
@@ -205,6 +240,10 @@ std::string clock_json(const ClockResults& results) {
                {"warnings", of.warnings}});
   for (std::size_t row = 0; row < of.rows.size(); ++row) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
+    if (results.hosts.empty()) continue;  // of an archive, which does not keep them
+    const evaluation::HostTimeErrors hosts = evaluation::host_medians(results.hosts[row]);
+    root["rows"].back()["hosts"] = host_errors_json(hosts.to_truth, 0);
+    root["rows"].back()["pairs"] = host_errors_json(hosts.to_master, 1);
   }
   const evaluation::Answer answer = evaluation::answer_of(of);
   root["answer"] = answer_with_fields(answer, clock_answer(of, answer, results.causes), nullptr);

@@ -24,14 +24,10 @@ Nanoseconds Departures::to_card(MessageId first) {
   return host_.stack().to_card(host_.true_now(), key_of_sent(first));
 }
 
-void Departures::on_left(MessageId first, std::size_t count, TrueTime passed) {
+void Departures::on_left(MessageId first, std::size_t count, const HostDeparture& departure) {
   if (!stamps_in_kernel_ && host_.nic() == nullptr) return;
-  const HostTime stamp =
-      host_.clock_interface().tick_of(host_.system_clock().read(host_.true_now()));
   while (first_sent_ + sent_.size() < first) sent_.emplace_back();
-  for (; count > 0; --count) {
-    sent_.push_back({.has_left = true, .left = stamp, .passed = passed});
-  }
+  for (; count > 0; --count) sent_.push_back({.has_left = true, .departure = departure});
   while (sent_.size() > kStampsKept) {
     sent_.pop_front();
     ++first_sent_;
@@ -40,35 +36,40 @@ void Departures::on_left(MessageId first, std::size_t count, TrueTime passed) {
   passed_.notify();
 }
 
-Task<std::optional<HostTime>> Departures::stamp(MessageId id, SteadyTime deadline) {
-  if (!stamps_in_kernel_) co_return std::nullopt;
+Task<std::optional<TrueTime>> Departures::reached(MessageId id, SteadyTime deadline,
+                                                  TrueTime HostDeparture::*part,
+                                                  WaitPoint& changed) {
   while (!has_left(id)) {
     if (host_.is_past(deadline)) co_return std::nullopt;
-    co_await left_.wait(host_.next_look(deadline));
+    co_await changed.wait(host_.next_look(deadline));
   }
   const Sent* message = sent(id);
   if (message == nullptr) co_return std::nullopt;
-  co_return message->left;
+  const TrueTime at = message->departure.*part;
+  while (at > host_.true_now()) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    const std::optional<TrueTime> look = host_.next_look(deadline);
+    co_await changed.wait(look ? std::min(*look, at) : at);
+  }
+  co_return at;
+}
+
+Task<std::optional<HostTime>> Departures::stamp(MessageId id, SteadyTime deadline) {
+  if (!stamps_in_kernel_) co_return std::nullopt;
+  const std::optional<TrueTime> at = co_await reached(id, deadline, &HostDeparture::stamped, left_);
+  if (!at) co_return std::nullopt;
+  co_return host_.clock_interface().tick_of(host_.system_clock().read(*at));
 }
 
 Task<std::optional<HardwareTime>> Departures::hardware_stamp(MessageId id, SteadyTime deadline) {
   const NicClock* nic = host_.nic();
   if (nic == nullptr) co_return std::nullopt;
-  while (!has_left(id)) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    co_await passed_.wait(host_.next_look(deadline));
-  }
-  const Sent* message = sent(id);
-  if (message == nullptr) co_return std::nullopt;
-  const TrueTime passed = message->passed;
-  while (passed > host_.true_now()) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    const std::optional<TrueTime> look = host_.next_look(deadline);
-    co_await passed_.wait(look ? std::min(*look, passed) : passed);
-  }
+  const std::optional<TrueTime> passed =
+      co_await reached(id, deadline, &HostDeparture::passed, passed_);
+  if (!passed) co_return std::nullopt;
   const MessageKey key = key_of_sent(id);
   RandomStream draw(host_.world().run_seed, kHardwareTransmission, key.direction, key.message);
-  co_return nic->stamp(passed, draw);
+  co_return nic->stamp(*passed, draw);
 }
 
 const Departures::Sent* Departures::sent(MessageId id) const {

@@ -38,20 +38,23 @@ class Departures : protected Endpoint {
   virtual MessageKey key_of_sent(MessageId id) const = 0;
   Nanoseconds to_card(MessageId first) final;
   // A message that was cancelled has left a gap before them.
-  void on_left(MessageId first, std::size_t count, TrueTime passed) final;
+  void on_left(MessageId first, std::size_t count, const HostDeparture& departure) final;
 
   SimHost& host_;
 
  private:
   struct Sent {
     bool has_left = false;  // false: the send was cancelled
-    HostTime left{};        // the kernel's stamp
-    TrueTime passed{};      // when its last bit passes the card
+    HostDeparture departure{};
   };
 
   bool has_left(MessageId id) const { return id < first_sent_ + sent_.size(); }
   // A message that has left; null if it never did or is no longer kept.
   const Sent* sent(MessageId id) const;
+  // When that part of the message's departure is over, which may be to come; nothing if that is
+  // not until the deadline, or the message did not leave.
+  Task<std::optional<TrueTime>> reached(MessageId id, SteadyTime deadline,
+                                        TrueTime HostDeparture::*part, WaitPoint& changed);
 
   bool stamps_in_kernel_;
   WaitPoint left_;

@@ -90,6 +90,7 @@ NicClock::NicClock(SimHost& host)
     : host_(host),
       clock_(host.id(), oscillator_of(host), epoch_of(host)),
       read_noise_(host.world().run_seed, host.name("network card's readings")),
+      bus_noise_(host.world().run_seed, host.name("network card's bus")),
       label_(host.name("network card's clock")) {}
 
 NicClock::Call NicClock::begin_call() {
@@ -97,12 +98,25 @@ NicClock::Call NicClock::begin_call() {
   return {turn, turn.start + (turn.end - turn.start) / 2};
 }
 
+NicClock::Call NicClock::begin_cross_stamp() {
+  const scenarios::Nic& nic = nic_of(host_);
+  const double spike_us =
+      bus_noise_.chance(nic.cross_stamp_spike_probability) ? nic.cross_stamp_spike_max_us : 0;
+  const Nanoseconds before = from_us(bus_noise_.uniform(0, spike_us / 2));
+  const Nanoseconds after = from_us(bus_noise_.uniform(0, spike_us / 2));
+  const Nanoseconds late = from_us(bus_noise_.exponential(nic.cross_stamp_exponential_us));
+  const Nanoseconds cost = from_ms(nic.cross_stamp_cost_ms);
+  const Cpu::Turn turn = host_.cpu().reserve(before + cost + after);
+  const TrueTime middle = turn.start + before + cost / 2;
+  return {turn, std::min(middle + late, turn.end)};
+}
+
 Task<void> NicClock::wait_until(TrueTime at) {
   if (at > host_.true_now()) co_await sleep_until(host_.world().context, at, label_);
 }
 
 Task<CrossStamp> NicClock::cross_stamp() {
-  const Call call = begin_call();
+  const Call call = begin_cross_stamp();
   co_await wait_until(call.turn.end);
   const SystemClock& system = host_.system_clock();
   const ClockInterface& interface = host_.clock_interface();

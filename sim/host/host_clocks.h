@@ -121,8 +121,10 @@ class SteadyPort final : public SteadyClock {
 //
 // A call occupies the host's CPU for cross_stamp_cost_ms and reads, steps or adjusts the card in
 // the middle of that. The system clock of a cross stamp is read at the beginning and at the end, as
-// the kernel does, on its ticks but not rounded to the interface's resolution. Changes of rate must
-// stay below 5e8 ppb.
+// the kernel does, on its ticks but not rounded to the interface's resolution. A cross stamp reads
+// the card later than the middle, by Exp(cross_stamp_exponential_us) that is not in the call's
+// duration, as on a bus that is not equally fast both ways; and rarely it is interrupted on either
+// side of that (cross_stamp_spike_*). Changes of rate must stay below 5e8 ppb.
 //
 // Messages are stamped by their last bit at both ends: when it passes the sender's port, behind
 // what was queued there, and when it reaches the receiver, before anything wakes up.
@@ -147,11 +149,14 @@ class NicClock final : public HardwareClock {
   };
 
   Call begin_call();
+  // With the delays that a reading of both clocks meets.
+  Call begin_cross_stamp();
   Task<void> wait_until(TrueTime at);
 
   SimHost& host_;
   SystemClock clock_;
   RandomStream read_noise_;
+  RandomStream bus_noise_;
   std::string label_;
 };
 

@@ -56,14 +56,18 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                      VirtualContext& context, RecordingSink& sink)
     : context_(context),
       engine_(context.engine()),
+      parameters_(scenario.hosts),
       faults_(scenario.faults),
       sink_(sink),
       load_(run_seed, load_key, scenario.hosts, scenario.network),
       outages_(scenario.faults),
+      traffic_(scenario.network, scenario.hosts, run_seed,
+               static_cast<std::size_t>(scenario.hosts.count)),
       network_(engine_, scenario.network, run_seed, static_cast<std::size_t>(scenario.hosts.count),
                load_, outages_),
       drift_files_(scenario.hosts, run_seed, clocks_) {
   SIMBENCH_ASSERT(scenario.hosts.count >= 1, "a rig has a master");
+  if (!traffic_.is_none()) network_.meet(traffic_);
   const HostWorld world{.context = context,
                         .hosts = scenario.hosts,
                         .network_parameters = scenario.network,

@@ -42,6 +42,7 @@
 #include "sim/host/sim_host.h"
 #include "sim/network/load.h"
 #include "sim/network/network.h"
+#include "sim/traffic/traffic.h"
 #include "sim/trigger/trigger_tree.h"
 
 namespace simbench::sim {
@@ -60,6 +61,8 @@ class HostGroup {
   HostGroup& operator=(const HostGroup&) = delete;
 
   std::size_t size() const { return hosts_.size(); }
+  // The host that a slave takes the time from.
+  PeerId followed(PeerId slave) const { return scenarios::followed_host(parameters_, slave); }
   SimHost& host(std::size_t index) { return hosts_[index]; }
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
   std::vector<SystemClock*> clocks();
@@ -82,10 +85,12 @@ class HostGroup {
 
   VirtualContext& context_;
   Engine& engine_;
+  const scenarios::Hosts& parameters_;
   const std::vector<scenarios::Fault>& faults_;
   RecordingSink& sink_;
   RunLoad load_;
   Outages outages_;
+  Traffic traffic_;
   SimNetwork network_;
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;

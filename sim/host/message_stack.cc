@@ -13,6 +13,11 @@ constexpr ComponentKey kTransmit("stack: transmit");
 constexpr ComponentKey kToCard("stack: transmit to card");
 constexpr ComponentKey kReceive("stack: receive");
 constexpr ComponentKey kWakeUp("stack: wake up");
+constexpr ComponentKey kLoadOfHost("load: factor of a host");
+constexpr ComponentKey kColdTransmit("load: cold transmit");
+constexpr ComponentKey kColdWakeUp("load: cold wake up");
+constexpr ComponentKey kLoadedWakeUp("load: wake up");
+constexpr ComponentKey kLoadedReceive("load: receive");
 constexpr ComponentKey kModeration("stack: interrupt moderation");
 constexpr ComponentKey kSleepiness("stack: sleep");
 
@@ -57,16 +62,38 @@ MessageStack::Parts::Parts(const scenarios::Stack& stack, std::uint64_t run_seed
       wake_up(stack.wake_up, run_seed, kWakeUp, host, speed),
       sleepiness(run_seed, kSleepiness, host, from_ms(stack.sleep_time_ms)) {}
 
+MessageStack::LoadParts::LoadParts(const scenarios::CpuLoad& load, std::uint64_t run_seed,
+                                   PeerId host, double factor)
+    : cold_after(from_ms(load.cold_after_ms)),
+      cold_transmit(load.cold_transmit, run_seed, kColdTransmit, host, factor),
+      cold_wake_up(load.cold_wake_up, run_seed, kColdWakeUp, host, factor),
+      wake_up(load.wake_up, run_seed, kLoadedWakeUp, host, factor),
+      receive(load.receive, run_seed, kLoadedReceive, host, factor) {}
+
 MessageStack::MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed, PeerId host)
     : moderation_(run_seed, kModeration) {
-  if (!hosts.stack) return;
-  parts_.emplace(*hosts.stack, run_seed, host, speed_of(*hosts.stack, run_seed, host));
+  if (hosts.stack) {
+    parts_.emplace(*hosts.stack, run_seed, host, speed_of(*hosts.stack, run_seed, host));
+  }
+  if (hosts.cpu_load) {
+    const double factor =
+        RandomStream(run_seed, kLoadOfHost, host).lognormal(hosts.cpu_load->host_log_sigma);
+    load_.emplace(*hosts.cpu_load, run_seed, host, factor);
+  }
+}
+
+void MessageStack::works(TrueTime at) {
+  if (load_) load_->warm_until = std::max(load_->warm_until, at + load_->cold_after);
 }
 
 Nanoseconds MessageStack::transmit(TrueTime at, const MessageKey& key) {
-  if (!parts_) return Nanoseconds(0);
-  const Nanoseconds delay = parts_->transmit.draw(at, key);
-  stay_awake(at + delay);
+  Nanoseconds delay(0);
+  if (load_ && is_cold(at)) delay += load_->cold_transmit.draw(at, key);
+  if (parts_) {
+    delay += parts_->transmit.draw(at, key);
+    stay_awake(at + delay);
+  }
+  works(at + delay);
   return delay;
 }
 
@@ -77,8 +104,9 @@ Nanoseconds MessageStack::to_card(TrueTime left, const MessageKey& key) {
 }
 
 TrueTime MessageStack::receive(TrueTime at, const MessageKey& key) {
-  if (!parts_) return at;
-  TrueTime stamp = interrupt(at, key);
+  const Nanoseconds under_load = load_ ? load_->receive.draw(at, key) : Nanoseconds(0);
+  if (!parts_) return at + under_load;
+  TrueTime stamp = interrupt(at, key) + under_load;
   if (sleeps(stamp)) {
     stamp += from_us(parts_->factor * parts_->stated.sleep_exit_us);
   }
@@ -115,7 +143,14 @@ TrueTime MessageStack::interrupt(TrueTime at, const MessageKey& key) {
 }
 
 Nanoseconds MessageStack::wake_up(TrueTime stamped, const MessageKey& key) {
-  return parts_ ? parts_->wake_up.draw(stamped, key) : Nanoseconds(0);
+  Nanoseconds delay(0);
+  if (parts_) delay += parts_->wake_up.draw(stamped, key);
+  if (load_) {
+    delay += load_->wake_up.draw(stamped, key);
+    if (is_cold(stamped)) delay += load_->cold_wake_up.draw(stamped, key);
+  }
+  works(stamped + delay);
+  return delay;
 }
 
 }  // namespace simbench::sim

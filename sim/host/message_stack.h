@@ -21,11 +21,17 @@
 //
 // One factor exp(N(0, speed_log_sigma)) per host scales all of it but the moderation.
 //
-// Without /hosts/stack nothing takes time. Not modelled: which processor core serves, batches that
-// share one pass (NAPI), and the stack's own queue under overload.
+// Under /hosts/cpu_load other programs keep every processor busy, which adds parts of its own to
+// these. A host's program that has waited for cold_after_ms finds its code and data out of the
+// caches: its next send call, or its return from a call that waits, is cold, and what it does
+// within that time is warm. A client's request and a server's wake-up are cold, the server's answer
+// and the client's wake-up for it warm: their difference does not average out.
 //
-// Source: docs/reference/host_sync.md section 4; scenario /hosts/stack. Cost: some 100 ns a
-// message.
+// Without /hosts/stack nothing of that takes time. Not modelled: which processor core serves,
+// batches that share one pass (NAPI), and the stack's own queue under overload.
+//
+// Source: docs/reference/host_sync.md section 4; scenario /hosts/stack and /hosts/cpu_load. Cost:
+// some 100 ns a message.
 //
 //   MessageStack stack(scenario.hosts, seed, 3);
 //   const Nanoseconds in_the_call = stack.transmit(now, {direction, id});
@@ -86,8 +92,21 @@ class MessageStack {
   TrueTime receive(TrueTime at, const MessageKey& key);
   // From the software stamp to the return of a receiver that waits.
   Nanoseconds wake_up(TrueTime stamped, const MessageKey& key);
+  // The host's program does something at `at`: it is warm for a while.
+  void works(TrueTime at);
 
  private:
+  // What the load of the processors adds.
+  struct LoadParts {
+    LoadParts(const scenarios::CpuLoad& stated, std::uint64_t run_seed, PeerId host, double factor);
+    Nanoseconds cold_after;
+    DelayProcess cold_transmit;
+    DelayProcess cold_wake_up;
+    DelayProcess wake_up;
+    DelayProcess receive;
+    TrueTime warm_until = TrueTime::min();
+  };
+
   struct Parts {
     Parts(const scenarios::Stack& stated, std::uint64_t run_seed, PeerId host, double factor);
     const scenarios::Stack& stated;
@@ -109,7 +128,10 @@ class MessageStack {
   void stay_awake(TrueTime from);
 
   KeyedStreams moderation_;
-  std::optional<Parts> parts_;  // nothing without /hosts/stack
+  bool is_cold(TrueTime at) const { return at >= load_->warm_until; }
+
+  std::optional<Parts> parts_;     // nothing without /hosts/stack
+  std::optional<LoadParts> load_;  // nothing without /hosts/cpu_load
 };
 
 }  // namespace simbench::sim

@@ -11,6 +11,7 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kReceiverJitter("host: error of the receiver's pulse");
+constexpr ComponentKey kInterruptFactor("host: factor of its interrupt latency");
 constexpr Nanoseconds kSecond = std::chrono::seconds(1);
 
 constexpr std::int64_t kPulsesKept = 1024;
@@ -53,6 +54,8 @@ SimPulseInput::SimPulseInput(SimHost& host, const PulseSchedule& source, std::st
     : host_(host),
       source_(source),
       latency_key_(std::string("host: interrupt latency, ").append(name)),
+      latency_factor_(RandomStream(host.world().run_seed, kInterruptFactor, host.id())
+                          .lognormal(host.world().hosts.pulse_lines.interrupt_latency_log_sigma)),
       opened_at_(host.true_now()),
       changed_(host.world().context, host.name(std::string("next pulse, ").append(name))) {}
 
@@ -84,7 +87,8 @@ std::optional<TrueTime> SimPulseInput::next_interrupt() {
                       static_cast<std::uint64_t>(*number_));
     const double latency_us =
         lines.interrupt_latency_us + draw.exponential(lines.interrupt_latency_exponential_us);
-    const TrueTime interrupt = std::max(*pulse + from_ms(latency_us * 1e-3), last_interrupt_);
+    const TrueTime interrupt =
+        std::max(*pulse + from_ms(latency_factor_ * latency_us * 1e-3), last_interrupt_);
     if (!host_.world().outages.host_stopped(host_.id(), interrupt)) return interrupt;
   }
   return std::nullopt;

@@ -86,9 +86,11 @@ class TriggerLine final : public PulseSchedule {
 };
 
 // A pulse is stamped interrupt_latency_us + Exp(interrupt_latency_exponential_us) after it came,
-// drawn per line, host and pulse; stamps are the kernel's, on the system clock's ticks but not
-// rounded to the interface's resolution. Interrupts are served in the order of the pulses, without
-// delay by the CPU's other work, and next() returns at the instant of the stamp.
+// drawn per line, host and pulse, times a factor of the host, exp(N(interrupt_latency_log_sigma)):
+// machines differ, so latencies do not cancel between them. Stamps are the kernel's, on the system
+// clock's ticks but not rounded to the interface's resolution. Interrupts are served in the order
+// of the pulses, without delay by the CPU's other work, and next() returns at the instant of the
+// stamp.
 //
 // Pulses are kept from the host's first pulse_input() for this line on. They are not generated
 // meanwhile: pulses and clocks can be read in the past, so those that came while no coroutine
@@ -111,6 +113,7 @@ class SimPulseInput final : public PulseInput {
   SimHost& host_;
   const PulseSchedule& source_;
   ComponentKey latency_key_;
+  double latency_factor_;
   TrueTime opened_at_;
   WaitPoint changed_;
   std::optional<std::int64_t> number_;

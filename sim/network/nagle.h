@@ -39,6 +39,7 @@ struct Segment {
   TrueTime at_switch{};             // when its last bit is there
   std::int64_t switch_number = 0;   // where it is
   bool is_at_access_point = false;  // has passed the air once
+  Nanoseconds sent_again_after{};   // a full buffer dropped it, on a stream
   double bytes = 0;                 // of the messages, without headers
   bool is_counted = true;           // as sent; of the copies of a group's message, one is
   boost::container::small_vector<Bytes, 1> messages{};

@@ -12,6 +12,7 @@ namespace {
 constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
 constexpr ComponentKey kAlignmentDraws("network: capture alignment");
+constexpr ComponentKey kBufferDraws("network: full buffers");
 constexpr ComponentKey kAckDraws("network: acknowledgement");
 constexpr ComponentKey kGroupCellDraws("network: message to a group in the cell");
 
@@ -96,11 +97,10 @@ void SimNetwork::send_segment(Segment&& segment) {
   Path& path = paths_[path_id];
   const MessageId first = segment.first;
   if (catch_up_) catch_up_();
-  const TrueTime at_card = engine_.now() + path.sender->to_card(first);
   const bool wireless = is_wireless(path.from, path.to);
-  const TrueTime passed = passes_port(path.from, wireless)
-                              ? host_ports_[path.from].pass(at_card, on_the_line(segment))
-                              : at_card;
+  const HostDeparture departure =
+      leave_host(path.from, passes_port(path.from, wireless), path.sender->to_card(first), segment);
+  const TrueTime passed = departure.passed;
   segment.left = engine_.now();
   segment.at_switch = passed;
   segment.switch_number = switch_of(path.from);
@@ -118,17 +118,43 @@ void SimNetwork::send_segment(Segment&& segment) {
   } else {
     engine_.schedule(passed, handler_id_, kAtSwitch, id);
   }
-  path.sender->on_left(first, count, passed);
+  path.sender->on_left(first, count, departure);
+}
+
+HostDeparture SimNetwork::leave_host(PeerId from, bool passes_a_port, Nanoseconds to_card,
+                                     const Segment& segment) {
+  const TrueTime now = engine_.now();
+  const HostWait wait = traffic_ == nullptr ? HostWait{} : traffic_->at_host(from, now);
+  const TrueTime stamped = now + wait.in_queue;
+  const TrueTime at_card = stamped + to_card + wait.in_ring;
+  return {
+      .stamped = stamped,
+      .passed = passes_a_port ? host_ports_[from].pass(at_card, on_the_line(segment)) : at_card};
+}
+
+bool SimNetwork::is_dropped(const Passage& traffic, const Segment& segment) const {
+  if (traffic.loss_share <= 0) return false;
+  const Path& path = paths_[segment.path];
+  RandomStream draw = KeyedStreams(run_seed_, kBufferDraws)
+                          .of(direction_of(path.from, path.to))
+                          .of(segment.first)
+                          .stream(static_cast<std::uint64_t>(segment.switch_number));
+  return draw.chance(traffic.loss_share);
+}
+
+void SimNetwork::drop(SegmentId id) {
+  report(segments_[id], std::nullopt);
+  release(id);
 }
 
 void SimNetwork::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
                                Bytes message, Endpoint& sender) {
   Segment segment{.first = id, .bytes = static_cast<double>(message.size())};
   if (catch_up_) catch_up_();
-  const TrueTime at_card = engine_.now() + sender.to_card(id);
   const bool wireless = is_wireless(from, recipients);
-  const TrueTime passed =
-      passes_port(from, wireless) ? host_ports_[from].pass(at_card, on_the_line(segment)) : at_card;
+  const HostDeparture departure =
+      leave_host(from, passes_port(from, wireless), sender.to_card(id), segment);
+  const TrueTime passed = departure.passed;
   segment.left = engine_.now();
   segment.at_switch = passed;
   segment.switch_number = switch_of(from);
@@ -141,7 +167,7 @@ void SimNetwork::send_to_group(PeerId from, MessageId id, std::vector<Recipient>
   } else {
     forward(std::move(to_all), passed);
   }
-  sender.on_left(id, 1, passed);
+  sender.on_left(id, 1, departure);
 }
 
 void SimNetwork::replicate(const GroupMessage& message, TrueTime at) {
@@ -160,18 +186,27 @@ void SimNetwork::replicate(const GroupMessage& message, TrueTime at) {
     copy.path = recipient.path;
     copy.first = recipient.id;
     copy.is_counted = std::exchange(is_counted, false);
-    travel(keep(std::move(copy)), rate_.is_infinite() ? at : switch_ports_[to].pass(at, duration));
+    const Passage traffic = traffic_at(to, at);
+    const bool is_lost = is_dropped(traffic, copy);
+    const SegmentId id = keep(std::move(copy));
+    if (is_lost) {
+      drop(id);
+    } else {
+      travel(id, rate_.is_infinite() ? at : pass_behind(traffic, switch_ports_[to], at, duration));
+    }
   }
   down.segment.switch_number = here - 1;
   up.segment.switch_number = here + 1;
   const auto ports = 2 * static_cast<std::size_t>(here);
   if (!down.recipients.empty()) {
     down.segment.is_counted = std::exchange(is_counted, false);
-    forward(std::move(down), trunk_ports_[ports].pass(at, duration));
+    const Passage traffic = traffic_at_trunk(here, false, at);
+    forward(std::move(down), pass_behind(traffic, trunk_ports_[ports], at, duration));
   }
   if (!up.recipients.empty()) {
     up.segment.is_counted = is_counted;
-    forward(std::move(up), trunk_ports_[ports + 1].pass(at, duration));
+    const Passage traffic = traffic_at_trunk(here, true, at);
+    forward(std::move(up), pass_behind(traffic, trunk_ports_[ports + 1], at, duration));
   }
 }
 
@@ -312,16 +347,24 @@ void SimNetwork::handle(Event event) {
 
 void SimNetwork::pass_switch(SegmentId id, TrueTime at) {
   Segment& segment = segments_[id];
-  const PeerId to = paths_[segment.path].to;
+  const Path& path = paths_[segment.path];
   const Nanoseconds duration = on_the_line(segment);
-  if (segment.switch_number == switch_of(to)) {
-    travel(id, switch_ports_[to].pass(at, duration));
+  const std::int64_t here = segment.switch_number;
+  const bool is_last = here == switch_of(path.to);
+  const bool is_up = switch_of(path.to) > here;
+  const Passage traffic = is_last ? traffic_at(path.to, at) : traffic_at_trunk(here, is_up, at);
+  if (is_dropped(traffic, segment)) {
+    if (path.transport != Transport::kStream) return drop(id);
+    segment.sent_again_after += from_ms(parameters_.retransmit_timeout_ms);
+  }
+  if (is_last) {
+    travel(id, pass_behind(traffic, switch_ports_[path.to], at, duration));
     return;
   }
-  const bool is_up = switch_of(to) > segment.switch_number;
-  const auto port = 2 * static_cast<std::size_t>(segment.switch_number) + (is_up ? 1 : 0);
+  const auto port = 2 * static_cast<std::size_t>(here) + (is_up ? 1 : 0);
   segment.switch_number += is_up ? 1 : -1;
-  engine_.schedule(trunk_ports_[port].pass(at, duration), handler_id_, kAtSwitch, id);
+  engine_.schedule(pass_behind(traffic, trunk_ports_[port], at, duration), handler_id_, kAtSwitch,
+                   id);
 }
 
 void SimNetwork::travel(SegmentId id, TrueTime at) {
@@ -372,7 +415,7 @@ void SimNetwork::travel_on_stream(SegmentId id, TrueTime at) {
   Path& path = paths_[segment.path];
   RandomStream draw = path.draws.stream(segment.first);
   TrueTime left = segment.left;
-  TrueTime arrival = at + path.latency.draw(draw, left);
+  TrueTime arrival = at + path.latency.draw(draw, left) + segment.sent_again_after;
   double timeout_ms = parameters_.retransmit_timeout_ms;
   for (int losses = 0; draw.chance(parameters_.loss_probability) || is_cut(path, left, arrival);
        timeout_ms *= 2) {

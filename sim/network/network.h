@@ -32,6 +32,10 @@
 // port and each trunk once, and is replicated in the switches towards the members' ports. From
 // there on each copy is a datagram like others, with a number of its own on its path.
 //
+// Traffic between hosts (network/traffic; sim/traffic/traffic.h) passes the same ports: a message
+// waits in its host's own queue and at each switch port for what is there. Where a buffer overflows
+// it may be lost, a datagram for good, a segment of a stream until its timeout.
+//
 // Capture traffic: the frames that a host sends on pass its port like messages, in the order of
 // their delivery and each in one piece, towards a storage whose own port is not modelled. Messages
 // of the host wait behind it; those to the host do not. A frame that finds more than a second of
@@ -68,6 +72,7 @@
 #include "sim/network/port.h"
 #include "sim/network/switch_clock.h"
 #include "sim/network/wifi.h"
+#include "sim/traffic/traffic.h"
 
 namespace simbench::sim {
 
@@ -80,6 +85,13 @@ struct ArrivedMessage {
 };
 using Inbox = std::deque<ArrivedMessage>;
 
+// When a message left its host: the kernel's stamp, behind the host's own queue, and when its last
+// bit passes the card; both now or later.
+struct HostDeparture {
+  TrueTime stamped;
+  TrueTime passed;
+};
+
 // One end of a channel, notified at the virtual time of each event.
 class Endpoint {
  public:
@@ -88,9 +100,8 @@ class Endpoint {
   virtual void on_arrival() = 0;
   // How long a segment that leaves now, from message `first` on, takes to the card.
   virtual Nanoseconds to_card(MessageId /*first*/) { return Nanoseconds(0); }
-  // Messages `first` to `first + count - 1` have left the stack; their last bit passes the card at
-  // `passed`, now or later.
-  virtual void on_left(MessageId first, std::size_t count, TrueTime passed) = 0;
+  // Messages `first` to `first + count - 1` have left the program.
+  virtual void on_left(MessageId first, std::size_t count, const HostDeparture& departure) = 0;
 };
 
 class SimNetwork : private EventHandler {
@@ -134,6 +145,9 @@ class SimNetwork : private EventHandler {
   // Is called before a message comes to a port or is reported: what has to come before it may be
   // made up for then.
   void before_messages(std::function<void()> catch_up) { catch_up_ = std::move(catch_up); }
+
+  // Messages meet this traffic, which must outlive the network's events.
+  void meet(Traffic& traffic) { traffic_ = &traffic; }
 
   // The messages from the peer that have arrived at the host that opened `path`.
   Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }
@@ -184,6 +198,22 @@ class SimNetwork : private EventHandler {
   std::int64_t switch_of(PeerId host) const {
     return parameters_.switch_of_host.empty() ? 0 : parameters_.switch_of_host[host];
   }
+  // The last bit leaves the port of the host's own, for a message that leaves the program now.
+  HostDeparture leave_host(PeerId from, bool passes_a_port, Nanoseconds to_card,
+                           const Segment& segment);
+  // When a message that comes to the port at `at` has passed it.
+  TrueTime pass_behind(const Passage& traffic, Port& port, TrueTime at, Nanoseconds duration) {
+    return port.pass(at + traffic.wait, duration);
+  }
+  Passage traffic_at(PeerId to, TrueTime at) {
+    return traffic_ == nullptr ? Passage{} : traffic_->at_switch(to, at);
+  }
+  Passage traffic_at_trunk(std::int64_t switch_number, bool is_up, TrueTime at) {
+    return traffic_ == nullptr ? Passage{} : traffic_->at_trunk(switch_number, is_up, at);
+  }
+  // Whether a full buffer drops the segment at this switch of its way.
+  bool is_dropped(const Passage& traffic, const Segment& segment) const;
+  void drop(SegmentId id);
   // The segment, which is at switch `number` of its way, has come to its next port.
   void pass_switch(SegmentId id, TrueTime at);
   // The message, which is at switch `number` of its way, goes to the members' ports there and on to
@@ -232,6 +262,7 @@ class SimNetwork : private EventHandler {
   RunLoad load_;
   const Outages& outages_;
   WorldObserver* observer_ = nullptr;
+  Traffic* traffic_ = nullptr;  // null: none
   std::function<void()> catch_up_;
   std::uint64_t messages_ = 0;
   SwitchClock switch_clock_;

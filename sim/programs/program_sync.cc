@@ -117,7 +117,9 @@ std::string ProgramSync::make_folder(SimHost& host) {
   }
   folder /= fmt::format("host{}", host.id());
   return processes::make_folder(folder, settings_.programs,
-                                {.host = host.id(), .drift = host.stored_frequency()});
+                                {.host = host.id(),
+                                 .follows = scenarios::followed_host(host.world().hosts, host.id()),
+                                 .drift = host.stored_frequency()});
 }
 
 void ProgramSync::fail(Host& host, const std::string& ending) {

@@ -56,6 +56,8 @@ class ProgramSync final : public HostSync {
   std::vector<std::string> notes() const override;
   Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
   Task<void> run_slave(Host& host, PeerId master) override;
+  // The programs of a slave are to serve as well.
+  bool can_relay() const override { return true; }
 
  private:
   Task<void> run(Host& host, std::vector<scenarios::HostPrograms::Command> commands);

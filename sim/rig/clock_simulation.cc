@@ -114,6 +114,7 @@ class ClockRun {
     for (std::size_t host = 0; host < clocks_.size(); ++host) {
       errors_s_[host] = (clocks_[host]->ahead_ns(engine_.now()) - master_ns) * 1e-9;
     }
+    sink_.on_master(master_ns * 1e-9);
     sink_.on_errors(engine_.now(), errors_s_);
     const TrueTime next = engine_.now() + request_.interval;
     if (next > end()) return engine_.stop();

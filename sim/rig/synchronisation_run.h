@@ -1,5 +1,6 @@
 // The host synchronisation of a world under way: the coroutines of the master and of all slaves;
-// and those of the capture alignment.
+// and those of the capture alignment. Slaves follow the hosts that the scenario states
+// (/hosts/follows); one that others follow has both parts, as a relay.
 //
 //   SynchronisationRun synchronisation(hosts, context);
 //   synchronisation.start(host_sync, [&] { start_capture(); });
@@ -59,14 +60,20 @@ class SynchronisationRun {
   // engine.
   void start(HostSync& host_sync, std::function<void()> on_end) {
     on_end_ = std::move(on_end);
-    std::vector<PeerId> slaves;
-    for (PeerId host = 1; host < hosts_.size(); ++host) slaves.push_back(host);
-    for (const PeerId slave : slaves) {
+    std::vector<std::vector<PeerId>> followers(hosts_.size());
+    for (PeerId host = 1; host < hosts_.size(); ++host) {
+      followers[hosts_.followed(host)].push_back(host);
+    }
+    for (PeerId slave = 1; slave < hosts_.size(); ++slave) {
+      Host& of = hosts_.host(slave);
+      const PeerId followed = hosts_.followed(slave);
       boost::asio::co_spawn(
-          context_, host_sync.run_slave(hosts_.host(slave), 0),
+          context_,
+          followers[slave].empty() ? host_sync.run_slave(of, followed)
+                                   : host_sync.run_relay(of, followed, std::move(followers[slave])),
           [this, slave](const std::exception_ptr& failure) { ended(slave, failure); });
     }
-    boost::asio::co_spawn(context_, host_sync.run_master(hosts_.host(0), slaves),
+    boost::asio::co_spawn(context_, host_sync.run_master(hosts_.host(0), std::move(followers[0])),
                           [this](const std::exception_ptr& failure) {
                             ended(0, failure);
                             if (!failure) on_end_();

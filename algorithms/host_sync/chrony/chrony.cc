@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 
+#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/outcome.h"
+#include "algorithms/host_sync/stamps.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -52,6 +55,24 @@ double ChronyReference::change_of_frequency(const ChronyEstimate& estimate) {
 
 namespace {
 
+NtpStamps stamps_of(ChronyStamps stamps) {
+  switch (stamps) {
+    case ChronyStamps::kApplication:
+      return NtpStamps::kApplication;
+    case ChronyStamps::kProgram:
+      return NtpStamps::kProgram;
+    case ChronyStamps::kCard:
+      return NtpStamps::kCard;
+    default:
+      return NtpStamps::kKernel;
+  }
+}
+
+// Whether the service fails without them.
+bool needs_stamps(ChronyStamps stamps) {
+  return stamps == ChronyStamps::kKernel || stamps == ChronyStamps::kCard;
+}
+
 constexpr double kPollSpread = 0.02;
 constexpr double kSlewAhead = 1.25;    // poll intervals
 constexpr double kMaxJitter = 1;       // s; the default of maxjitter
@@ -73,7 +94,9 @@ class ChronyClient {
   static constexpr std::uint32_t kReachPolls = 8;  // the last ones, of which one must be answered
   static constexpr std::uint32_t kPatience = 8;  // polls without a reply, then the slave has failed
 
-  ChronyClient(Host& host, PeerId server, const ChronySettings& settings);
+  // *is_synchronised once the clock was corrected.
+  ChronyClient(Host& host, PeerId server, const ChronySettings& settings,
+               std::shared_ptr<bool> is_synchronised);
 
   // Ends only where the host lacks the stamps asked for.
   Task<void> run();
@@ -102,7 +125,7 @@ class ChronyClient {
   ChronySample sample_of(const Pending& complete) const;
   Nanoseconds interval() const;
   bool lacks_stamps() const {
-    return settings_.stamps == ChronyStamps::kKernel && !association_.lacking().empty();
+    return needs_stamps(settings_.stamps) && !association_.lacking().empty();
   }
 
   double seconds(SteadyTime at) const { return to_seconds(at - start_); }
@@ -124,6 +147,7 @@ class ChronyClient {
   std::uint32_t replies_ = 0;
   std::uint32_t unanswered_ = 0;
   int good_samples_ = 0;
+  std::shared_ptr<bool> is_synchronised_;
   OutcomeReport outcome_;
 };
 
@@ -134,18 +158,18 @@ double UnfinishedSlew::left_s(double at_s) const {
   return std::copysign(std::max(std::abs(offset_s) - done_s, 0.0), offset_s);
 }
 
-ChronyClient::ChronyClient(Host& host, PeerId server, const ChronySettings& settings)
+ChronyClient::ChronyClient(Host& host, PeerId server, const ChronySettings& settings,
+                           std::shared_ptr<bool> is_synchronised)
     : host_(host),
       server_(server),
       settings_(settings),
-      association_(host, server,
-                   settings.stamps == ChronyStamps::kApplication ? NtpStamps::kApplication
-                                                                 : NtpStamps::kKernel),
+      association_(host, server, stamps_of(settings.stamps)),
       stats_(settings.stats),
       reference_(settings.reference),
       poll_(settings.poll_min, settings.poll_max, settings.poll_target),
       start_(host.steady_clock().now()),
       heard_(start_),
+      is_synchronised_(std::move(is_synchronised)),
       outcome_(host) {
   if (settings.is_interleaved) association_.interleave();
 }
@@ -186,6 +210,7 @@ Task<void> ChronyClient::poll() {
     co_return;
   }
   co_await correct();
+  *is_synchronised_ = true;
   outcome_.synchronised(polls_);
 }
 
@@ -201,7 +226,7 @@ void ChronyClient::missed() {
 bool ChronyClient::use(const NtpMeasurement& measurement) {
   ++replies_;
   unanswered_ = 0;
-  const bool is_stamped = measurement.is_kernels || settings_.stamps != ChronyStamps::kKernel;
+  const bool is_stamped = measurement.is_stamped || !needs_stamps(settings_.stamps);
   const std::optional<Pending> complete = is_stamped ? completed(measurement) : std::nullopt;
   if (complete) return use(sample_of(*complete));
   poll_.add(kBadSample);
@@ -291,13 +316,38 @@ ChronySample ChronyClient::sample_of(const Pending& complete) const {
   return sample;
 }
 
-Task<void> serve_chronyd(Host& host, std::vector<PeerId> slaves, ChronySettings /*settings*/) {
-  co_await serve_ntp(host, std::move(slaves));
+namespace {
+
+Task<void> serve_chrony_clients(Host& host, std::vector<PeerId> slaves, ChronySettings settings,
+                                std::shared_ptr<const bool> is_synchronised) {
+  return serve_ntp(
+      host, std::move(slaves),
+      {.stamps = stamps_of(settings.stamps), .is_synchronised = std::move(is_synchronised)});
+}
+
+Task<void> follow_chrony_server(Host& host, PeerId master, ChronySettings settings,
+                                std::shared_ptr<bool> is_synchronised) {
+  ChronyClient client(host, master, settings, std::move(is_synchronised));
+  co_await client.run();
+}
+
+}  // namespace
+
+Task<void> serve_chronyd(Host& host, std::vector<PeerId> slaves, ChronySettings settings) {
+  return serve_chrony_clients(host, std::move(slaves), settings, nullptr);
 }
 
 Task<void> follow_chronyd(Host& host, PeerId master, ChronySettings settings) {
-  ChronyClient client(host, master, settings);
-  co_await client.run();
+  return follow_chrony_server(host, master, settings, std::make_shared<bool>(false));
+}
+
+Task<void> relay_chronyd(Host& host, PeerId master, std::vector<PeerId> slaves,
+                         ChronySettings settings) {
+  auto is_synchronised = std::make_shared<bool>(false);
+  std::vector<Task<void>> sides;
+  sides.push_back(follow_chrony_server(host, master, settings, is_synchronised));
+  sides.push_back(serve_chrony_clients(host, std::move(slaves), settings, is_synchronised));
+  co_await join_all(std::move(sides));
 }
 
 namespace {
@@ -324,9 +374,12 @@ void bind_polling(ParameterBinder& parameters, ChronySettings& settings) {
   parameters.choice("stamps", settings.stamps,
                     {{"available", ChronyStamps::kAvailable},
                      {"kernel", ChronyStamps::kKernel},
-                     {"application", ChronyStamps::kApplication}},
+                     {"application", ChronyStamps::kApplication},
+                     {"program", ChronyStamps::kProgram},
+                     {"card", ChronyStamps::kCard}},
                     "t1 from the kernel where it stamps (available), from the kernel or not at "
-                    "all (kernel), or from before the send",
+                    "all (kernel), or from before the send (application); all four from the "
+                    "program (program) or from the network card (card), on both hosts",
                     "chronyd takes the best it gets");
 }
 
@@ -372,13 +425,15 @@ namespace {
 
 // Configured as Debian installs it; `settings` say what differs: polls and stamps.
 HostSyncEntry chrony(const char* name, const char* summary, ChronySettings settings) {
+  const bool has_card = settings.stamps == ChronyStamps::kCard;
   settings.reference.max_update_skew_ppm = 100;
   settings.reference.step_updates = 3;
   return with_settings<HostSyncEntry>(
       {.name = name,
        .family = "chrony",
        .summary = summary,
-       .source = "chrony 4.3 (docs/reference/host_sync.md sections 1 and 2); RFC 5905"},
+       .source = "chrony 4.3 (docs/reference/host_sync.md sections 1 and 2); RFC 5905",
+       .needs = needs_of(has_card ? StampSource::kCard : StampSource::kKernel)},
       settings, kMake<ChronyService>);
 }
 
@@ -401,6 +456,15 @@ std::vector<HostSyncEntry> host_sync_chrony() {
               .is_interleaved = true,
               .stamps = ChronyStamps::kKernel,
               .service_time = from_ms(0.5 * 3600e3)}),
+      chrony("chrony_hw_xleave", "The same polls as chrony, with the cards' stamps, interleaved",
+             {.is_interleaved = true, .stamps = ChronyStamps::kCard}),
+      chrony("chrony_hw", "The same without interleaving: the server's departure is its program's",
+             {.stamps = ChronyStamps::kCard}),
+      chrony("chrony_sw_xleave",
+             "The same polls as chrony, with stamps of the programs alone, interleaved",
+             {.is_interleaved = true, .stamps = ChronyStamps::kProgram}),
+      chrony("chrony_sw", "The same without interleaving: chronyd without the kernel's stamps",
+             {.stamps = ChronyStamps::kProgram}),
   };
 }
 

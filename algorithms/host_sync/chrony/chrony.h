@@ -154,6 +154,8 @@ enum class ChronyStamps : std::uint8_t {
   kAvailable,    // the kernel's where it stamps, else the program's, as chronyd takes them
   kKernel,       // the kernel's, or the service fails
   kApplication,  // t1 from before the send
+  kProgram,      // all from the program: no stamps of the kernel, on either side
+  kCard,         // all from the network card, converted to the system clock (hwtimestamp)
 };
 
 struct ChronySettings {
@@ -172,7 +174,10 @@ struct ChronySettings {
 
 Task<void> serve_chronyd(Host& host, std::vector<PeerId> slaves, ChronySettings settings);
 Task<void> follow_chronyd(Host& host, PeerId master, ChronySettings settings);
-using ChronyService = ClockService<ChronySettings, serve_chronyd, follow_chronyd>;
+// It says that it is not synchronised until the client's side has corrected its clock.
+Task<void> relay_chronyd(Host& host, PeerId master, std::vector<PeerId> slaves,
+                         ChronySettings settings);
+using ChronyService = ClockService<ChronySettings, serve_chronyd, follow_chronyd, relay_chronyd>;
 
 struct UnfinishedSlew {
   double offset_s = 0;

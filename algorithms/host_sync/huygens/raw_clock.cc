@@ -1,6 +1,6 @@
 #include "algorithms/host_sync/huygens/raw_clock.h"
 
-#include "algorithms/host_sync/ptp/ptp_clocks.h"
+#include "algorithms/host_sync/cross_stamps.h"
 
 namespace simbench {
 

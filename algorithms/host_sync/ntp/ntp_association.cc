@@ -4,6 +4,7 @@
 #include <deque>
 #include <utility>
 
+#include "algorithms/host_sync/cross_stamps.h"
 #include "algorithms/host_sync/join.h"
 
 namespace simbench {
@@ -141,13 +142,47 @@ double NtpMeasurement::delay_s() const { return to_seconds((t4 - t1) - (t3 - t2)
 
 double NtpBroadcast::offset_s() const { return to_seconds(t3 - t4); }
 
+namespace {
+
+// What the system clock read when the card's clock read that.
+Task<HostTime> on_system_clock(Host& host, HardwareTime stamp) {
+  const CrossStamp now = co_await narrowest_cross_stamp(host);
+  co_return now.before + (now.after - now.before) / 2 + (stamp - now.hardware);
+}
+
+// When a message arrived that was received just now; nothing if the card was to stamp it and did
+// not.
+Task<std::optional<HostTime>> arrival_of(Host& host, const ReceivedMessage& message,
+                                         NtpStamps stamps) {
+  if (stamps == NtpStamps::kProgram) {
+    const HostTime now = co_await host.clock().now();
+    co_return now;
+  }
+  if (stamps != NtpStamps::kCard) co_return message.received;
+  if (!message.received_hardware || host.hardware_clock() == nullptr) co_return std::nullopt;
+  const HostTime arrived = co_await on_system_clock(host, *message.received_hardware);
+  co_return arrived;
+}
+
+// When the message left, by its host's stamp.
+Task<std::optional<HostTime>> departure_of(Host& host, MessageChannel& channel,
+                                           MessageStamps& departures, MessageId id) {
+  const std::optional<std::int64_t> left = co_await departures.departure(channel, id);
+  if (!left) co_return std::nullopt;
+  if (departures.source() != StampSource::kCard) co_return HostTime(Nanoseconds(*left));
+  const HostTime converted = co_await on_system_clock(host, HardwareTime(Nanoseconds(*left)));
+  co_return converted;
+}
+
+}  // namespace
+
 NtpAssociation::NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std::uint8_t version)
     : host_(host),
       server_(server),
       stamps_(stamps),
       version_(version),
       channel_(host.open_channel(server, Transport::kDatagram)),
-      departures_(host, StampSource::kKernel) {}
+      departures_(host, stamps == NtpStamps::kCard ? StampSource::kCard : StampSource::kKernel) {}
 
 Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout) {
   NtpMeasurement measurement;
@@ -163,10 +198,10 @@ Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout
   Bytes bytes = encode(request);
   const SteadyTime deadline = host_.steady_clock().now() + timeout;
   const MessageId id = co_await channel_.send(std::move(bytes));
-  if (stamps_ == NtpStamps::kKernel) {
-    const std::optional<std::int64_t> left = co_await departures_.departure(channel_, id);
-    measurement.is_kernels = left.has_value();
-    if (left) measurement.t1 = HostTime(Nanoseconds(*left));
+  if (stamps_ == NtpStamps::kKernel || stamps_ == NtpStamps::kCard) {
+    const std::optional<HostTime> left = co_await departure_of(host_, channel_, departures_, id);
+    measurement.is_stamped = left.has_value();
+    if (left) measurement.t1 = *left;
   }
   while (true) {
     const std::optional<ReceivedMessage> received = co_await channel_.receive(deadline);
@@ -174,11 +209,13 @@ Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout
     const std::optional<NtpPacket> reply = decode_ntp_packet(received->bytes);
     if (!reply || !is_valid_ntp_reply(*reply, request)) continue;
     unanswered_ = 0;
+    const std::optional<HostTime> arrived = co_await arrival_of(host_, *received, stamps_);
+    if (!arrived) co_return std::nullopt;
     server_received_ = reply->receive;
-    reply_received_ = to_ntp(received->received);
+    reply_received_ = to_ntp(*arrived);
     measurement.t2 = from_ntp(reply->receive, measurement.t1);
     measurement.t3 = from_ntp(reply->transmit, measurement.t1);
-    measurement.t4 = received->received;
+    measurement.t4 = *arrived;
     measurement.received = received->received_steady;
     measurement.is_interleaved = is_interleaved_reply(*reply, request);
     measurement.root_delay_s = reply->root_delay * kShortFormatUnit;
@@ -205,63 +242,95 @@ Task<std::optional<NtpBroadcast>> NtpAssociation::next_broadcast(SteadyTime dead
 
 namespace {
 
-struct SentReply {
-  NtpTimestamp receive;
-  MessageId id = 0;
+// The replies to one client and when they left.
+class NtpReplies {
+ public:
+  NtpReplies(Host& host, MessageChannel& channel, NtpStamps stamps)
+      : host_(host),
+        channel_(channel),
+        stamps_(stamps),
+        departures_(host, stamps == NtpStamps::kCard ? StampSource::kCard : StampSource::kKernel) {}
+
+  // A reply was sent just now whose receive and transmit stamps these are.
+  Task<void> sent(NtpTimestamp receive, HostTime transmit, MessageId id) {
+    Sent reply{.receive = receive, .id = id};
+    if (stamps_ == NtpStamps::kProgram) reply.left = transmit;
+    // The card's clock runs by itself: its stamp is converted at once.
+    if (stamps_ == NtpStamps::kCard) {
+      reply.left = co_await departure_of(host_, channel_, departures_, id);
+    }
+    sent_.push_back(reply);
+    if (sent_.size() > kRepliesKept) sent_.pop_front();
+  }
+
+  // When the reply left whose receive stamp is `receive`; nothing if that is not known.
+  Task<std::optional<HostTime>> departure(NtpTimestamp receive) {
+    for (const Sent& reply : sent_) {
+      if (reply.receive != receive) continue;
+      const bool is_kernels = stamps_ == NtpStamps::kApplication || stamps_ == NtpStamps::kKernel;
+      if (!is_kernels) co_return reply.left;
+      const SteadyTime deadline = host_.steady_clock().now() + kStampTimeout;
+      const std::optional<HostTime> left = co_await channel_.transmit_stamp(reply.id, deadline);
+      co_return left;
+    }
+    co_return std::nullopt;
+  }
+
+ private:
+  struct Sent {
+    NtpTimestamp receive;
+    MessageId id = 0;
+    std::optional<HostTime> left{};
+  };
+
+  Host& host_;
+  MessageChannel& channel_;
+  NtpStamps stamps_;
+  MessageStamps departures_;
+  std::deque<Sent> sent_;
 };
 
-// When the reply left whose receive stamp is `receive`; nothing if that is not known.
-Task<std::optional<HostTime>> reply_departure(Host& host, MessageChannel& channel,
-                                              const std::deque<SentReply>& sent,
-                                              NtpTimestamp receive) {
-  for (const SentReply& reply : sent) {
-    if (reply.receive != receive) continue;
-    const SteadyTime deadline = host.steady_clock().now() + kStampTimeout;
-    const std::optional<HostTime> left = co_await channel.transmit_stamp(reply.id, deadline);
-    co_return left;
-  }
-  co_return std::nullopt;
+NtpPacket reply_to(const NtpPacket& request, HostTime arrived, const NtpServing& serving) {
+  NtpPacket reply = server_packet(kNtpModeServer, arrived);
+  if (serving.is_synchronised && !*serving.is_synchronised) reply.leap = kNtpLeapAlarm;
+  reply.version = request.version;
+  reply.poll = request.poll;
+  reply.root_dispersion = static_cast<std::uint32_t>(serving.root_dispersion_s / kShortFormatUnit);
+  reply.origin = request.transmit;
+  reply.receive = to_ntp(arrived);
+  return reply;
 }
 
-Task<void> serve_client(Host& host, PeerId client, double root_dispersion_s) {
+Task<void> serve_client(Host& host, PeerId client, NtpServing serving) {
   MessageChannel& channel = host.open_channel(client, Transport::kDatagram);
-  std::deque<SentReply> sent;
+  NtpReplies replies(host, channel, serving.stamps);
   while (true) {
     const std::optional<ReceivedMessage> received =
         co_await channel.receive(host.steady_clock().now() + kIdle);
     if (!received) continue;
     const std::optional<NtpPacket> request = decode_ntp_packet(received->bytes);
     if (!request || request->mode != kNtpModeClient) continue;
-    NtpPacket reply = server_packet(kNtpModeServer, received->received);
-    reply.version = request->version;
-    reply.poll = request->poll;
-    reply.root_dispersion = static_cast<std::uint32_t>(root_dispersion_s / kShortFormatUnit);
-    reply.origin = request->transmit;
-    reply.receive = to_ntp(received->received);
-    const std::optional<HostTime> left =
-        co_await reply_departure(host, channel, sent, request->origin);
-    if (left) {
-      reply.origin = request->receive;
-      reply.transmit = to_ntp(*left);
-    } else {
-      const HostTime t3 = co_await host.clock().now();
-      reply.transmit = to_ntp(t3);
-    }
+    const std::optional<HostTime> arrived = co_await arrival_of(host, *received, serving.stamps);
+    if (!arrived) continue;
+    NtpPacket reply = reply_to(*request, *arrived, serving);
+    const std::optional<HostTime> left = co_await replies.departure(request->origin);
+    HostTime t3 = left.value_or(HostTime{});
+    if (left) reply.origin = request->receive;
+    if (!left || serving.stamps == NtpStamps::kProgram) t3 = co_await host.clock().now();
+    reply.transmit = to_ntp(left.value_or(t3));
     Bytes bytes = encode(reply);
     const MessageId id = co_await channel.send(std::move(bytes));
-    sent.push_back({reply.receive, id});
-    if (sent.size() > kRepliesKept) sent.pop_front();
+    co_await replies.sent(reply.receive, t3, id);
   }
 }
 
 }  // namespace
 
-Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, double root_dispersion_s) {
+Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, NtpServing serving) {
+  if (serving.stamps == NtpStamps::kCard && host.hardware_clock() == nullptr) co_return;
   std::vector<Task<void>> servers;
   servers.reserve(clients.size());
-  for (const PeerId client : clients) {
-    servers.push_back(serve_client(host, client, root_dispersion_s));
-  }
+  for (const PeerId client : clients) servers.push_back(serve_client(host, client, serving));
   co_await join_all(std::move(servers));
 }
 

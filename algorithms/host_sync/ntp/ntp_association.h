@@ -1,12 +1,21 @@
 // One NTP association: a client and its server exchange 48-byte packets, unicast or broadcast.
 //
-// Stamps: a packet carries the clock's reading from before it is sent. With NtpStamps::kKernel the
-// client replaces its own t1 by the kernel's transmit stamp where there is one. The server cannot
-// do so with t3, which has left by then: its sending time counts to one direction only, and half of
-// it is an error.
+// Stamps: a packet carries the clock's reading from before it is sent. What else a host stamps:
 //
-// Interleaved mode does away with that error: a reply carries the kernel's stamp of when the reply
-// before it left. The client asks by echoing, as the origin, the server's last receive stamp; the
+//   NtpStamps      t1, of the client                   t2, t4, on arrival   departure, interleaved
+//   kApplication   that reading                        the host's           the kernel's
+//   kKernel        the kernel's where there is one     the host's           the kernel's
+//   kProgram       that reading                        the program's        that reading
+//   kCard          the card's                          the card's           the card's
+//
+// The host's are those of its receive calls; the program's are readings of the clock after them.
+// The card's are converted to the system clock by a cross stamp taken right after them, as their
+// clock runs by itself; the rates of the two clocks count as equal in between. The server cannot
+// put a later stamp into t3, which has left by then: its sending time counts to one direction only,
+// and half of it is an error.
+//
+// Interleaved mode does away with that error: a reply carries the stamp of when the reply before it
+// left. The client asks by echoing, as the origin, the server's last receive stamp; the
 // server answers so if it has that stamp, and as usual otherwise. It keeps the last five replies;
 // after four requests without a reply the client asks as usual.
 //
@@ -19,6 +28,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -77,7 +87,7 @@ Nanoseconds clock_offset(HostTime t1, HostTime t2, HostTime t3, HostTime t4);
 inline constexpr std::uint8_t kNtpModeBroadcast = 5;
 inline constexpr std::uint8_t kNtpStratumMax = 15;
 
-enum class NtpStamps : std::uint8_t { kApplication, kKernel };
+enum class NtpStamps : std::uint8_t { kApplication, kKernel, kProgram, kCard };
 
 struct NtpMeasurement {
   HostTime t1{};
@@ -86,7 +96,7 @@ struct NtpMeasurement {
   HostTime t4{};
   SteadyTime received{};        // when t4 was taken
   bool is_interleaved = false;  // t3 is that of the reply before
-  bool is_kernels = false;      // t1 is
+  bool is_stamped = false;      // t1 is the kernel's or the card's
   double root_delay_s = 0;
   double root_dispersion_s = 0;
 
@@ -139,9 +149,16 @@ class NtpAssociation {
   NtpTimestamp reply_received_;   // and its t4
 };
 
+struct NtpServing {
+  double root_dispersion_s = 0;  // what the server announces as its clock's error bound, to 65535
+  NtpStamps stamps = NtpStamps::kApplication;
+  // Whether its own clock is right: until then it says that it is not. Null: it always is.
+  std::shared_ptr<const bool> is_synchronised{};
+};
+
 // Serves these clients for ever, as a local reference of stratum 1, in the version of each request.
-// The server announces `root_dispersion_s`, up to 65535, as the error bound of its own clock.
-Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, double root_dispersion_s = 0);
+// One without a card for its stamps serves nobody.
+Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, NtpServing serving = {});
 
 // Sends a broadcast (mode 5) to each client every `interval`, for ever.
 Task<void> broadcast_ntp(Host& host, std::vector<PeerId> clients, Nanoseconds interval);

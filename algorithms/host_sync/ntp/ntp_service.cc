@@ -37,7 +37,9 @@ class NtpClient {
   static constexpr Nanoseconds kBurstSpacing{2'000'000'000};
   static constexpr std::uint32_t kPatience = 8;  // polls without a reply, then the slave has failed
 
-  NtpClient(Host& host, PeerId server, const NtpSettings& settings);
+  // *is_synchronised once the clock was updated.
+  NtpClient(Host& host, PeerId server, const NtpSettings& settings,
+            std::shared_ptr<bool> is_synchronised);
 
   // Ends only by panic.
   Task<void> run();
@@ -79,10 +81,12 @@ class NtpClient {
   std::uint32_t polls_ = 0;
   bool is_slewing_ = false;
   bool panicked_ = false;
+  std::shared_ptr<bool> is_synchronised_;
   OutcomeReport outcome_;
 };
 
-NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
+NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings,
+                     std::shared_ptr<bool> is_synchronised)
     : host_(host),
       server_(server),
       settings_(settings),
@@ -92,6 +96,7 @@ NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
                           settings.reads_drift_file ? host.stored_frequency() : std::nullopt)),
       start_(host.steady_clock().now()),
       broadcast_delay_s_(settings.broadcast_delay_s / 2),
+      is_synchronised_(std::move(is_synchronised)),
       outcome_(host) {}
 
 Task<void> NtpClient::run() {
@@ -218,6 +223,7 @@ Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
     co_await host_.clock().slew(from_seconds(sample->offset_s), NtpDiscipline::kMaxFrequency * 1e9);
   }
   co_await correct_frequency();
+  *is_synchronised_ = true;
   outcome_.synchronised(polls_);
   co_return action;
 }
@@ -267,23 +273,45 @@ void NtpClient::note_reply(bool replied) {
 
 }  // namespace
 
-Task<void> serve_ntpd(Host& host, std::vector<PeerId> slaves, NtpSettings settings) {
+namespace {
+
+Task<void> serve_ntpd_clients(Host& host, std::vector<PeerId> slaves, NtpSettings settings,
+                              std::shared_ptr<const bool> is_synchronised) {
   std::vector<Task<void>> servers;
-  servers.push_back(serve_ntp(host, slaves));
+  servers.push_back(serve_ntp(host, slaves, {.is_synchronised = std::move(is_synchronised)}));
   if (settings.mode != NtpMode::kUnicast) {
     servers.push_back(broadcast_ntp(host, std::move(slaves), settings.broadcast_interval));
   }
   co_await join_all(std::move(servers));
 }
 
-Task<void> follow_ntpd(Host& host, PeerId master, NtpSettings settings) {
+Task<void> follow_ntpd_server(Host& host, PeerId master, NtpSettings settings,
+                              std::shared_ptr<bool> is_synchronised) {
   if (settings.mode != NtpMode::kUnicast) {
     const double interval_s = to_seconds(settings.broadcast_interval);
     settings.discipline.poll_min = static_cast<int>(std::lround(std::log2(interval_s)));
     settings.discipline.poll_max = settings.discipline.poll_min;
   }
-  NtpClient client(host, master, settings);
+  NtpClient client(host, master, settings, std::move(is_synchronised));
   co_await client.run();
+}
+
+}  // namespace
+
+Task<void> serve_ntpd(Host& host, std::vector<PeerId> slaves, NtpSettings settings) {
+  return serve_ntpd_clients(host, std::move(slaves), std::move(settings), nullptr);
+}
+
+Task<void> follow_ntpd(Host& host, PeerId master, NtpSettings settings) {
+  return follow_ntpd_server(host, master, std::move(settings), std::make_shared<bool>(false));
+}
+
+Task<void> relay_ntpd(Host& host, PeerId master, std::vector<PeerId> slaves, NtpSettings settings) {
+  auto is_synchronised = std::make_shared<bool>(false);
+  std::vector<Task<void>> sides;
+  sides.push_back(follow_ntpd_server(host, master, settings, is_synchronised));
+  sides.push_back(serve_ntpd_clients(host, std::move(slaves), settings, is_synchronised));
+  co_await join_all(std::move(sides));
 }
 
 namespace {

@@ -65,6 +65,8 @@ struct NtpSettings {
 Task<void> serve_ntpd(Host& host, std::vector<PeerId> slaves, NtpSettings settings);
 // In the broadcast modes the discipline's poll bounds are those of the interval.
 Task<void> follow_ntpd(Host& host, PeerId master, NtpSettings settings);
-using NtpService = ClockService<NtpSettings, serve_ntpd, follow_ntpd>;
+// It says that it is not synchronised until the client's side has updated its clock.
+Task<void> relay_ntpd(Host& host, PeerId master, std::vector<PeerId> slaves, NtpSettings settings);
+using NtpService = ClockService<NtpSettings, serve_ntpd, follow_ntpd, relay_ntpd>;
 
 }  // namespace simbench

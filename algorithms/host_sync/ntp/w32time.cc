@@ -170,7 +170,7 @@ double w32time_rate_change(Nanoseconds offset, Nanoseconds interval,
 }
 
 Task<void> serve_w32time(Host& host, std::vector<PeerId> slaves, W32TimeSettings /*settings*/) {
-  co_await serve_ntp(host, std::move(slaves), kLocalClockDispersion);
+  co_await serve_ntp(host, std::move(slaves), {.root_dispersion_s = kLocalClockDispersion});
 }
 
 Task<void> follow_w32time(Host& host, PeerId master, W32TimeSettings settings) {

@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ptp/ptp_port.h"
 #include "algorithms/registry.h"
 
@@ -15,18 +17,31 @@ Task<void> serve_ptp_slave(Host& host, PeerId slave, PtpSettings settings,
   co_await master.run();
 }
 
+ServeSlave serving(Host& host, const PtpSettings& settings) {
+  return [&host, settings](PeerId slave, std::shared_ptr<const bool> is_ready) {
+    return serve_ptp_slave(host, slave, settings, std::move(is_ready));
+  };
+}
+
 }  // namespace
 
 Task<void> serve_ptp(Host& host, std::vector<PeerId> slaves, PtpSettings settings) {
-  const auto serve = [&host, settings](PeerId slave, std::shared_ptr<const bool> is_ready) {
-    return serve_ptp_slave(host, slave, settings, std::move(is_ready));
-  };
-  return serve_slaves(host, std::move(slaves), settings.stamps, settings.servo_limits, serve);
+  return serve_slaves(host, std::move(slaves), settings.stamps, settings.servo_limits,
+                      serving(host, settings));
 }
 
 Task<void> follow_ptp(Host& host, PeerId master, PtpSettings settings) {
   PtpSlave slave(host, master, settings);
   co_await slave.run();
+}
+
+Task<void> relay_ptp(Host& host, PeerId master, std::vector<PeerId> slaves, PtpSettings settings) {
+  PtpSlave port(host, master, settings);
+  std::vector<Task<void>> ports;
+  ports.push_back(port.run());
+  ports.push_back(
+      serve_slaves_of_relay(std::move(slaves), port.is_locked(), serving(host, settings)));
+  co_await join_all(std::move(ports));
 }
 
 namespace {

@@ -56,6 +56,9 @@ struct PtpSettings {
 
 Task<void> serve_ptp(Host& host, std::vector<PeerId> slaves, PtpSettings settings);
 Task<void> follow_ptp(Host& host, PeerId master, PtpSettings settings);
-using Ptp = ClockService<PtpSettings, serve_ptp, follow_ptp>;
+// A boundary clock: its slave's port steers the clock that stamps, which its other ports serve once
+// that is locked.
+Task<void> relay_ptp(Host& host, PeerId master, std::vector<PeerId> slaves, PtpSettings settings);
+using Ptp = ClockService<PtpSettings, serve_ptp, follow_ptp, relay_ptp>;
 
 }  // namespace simbench

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "algorithms/host_sync/cross_stamps.h"
 #include "algorithms/host_sync/join.h"
 
 namespace simbench {
@@ -60,18 +61,6 @@ Task<void> apply_answer(Host& host, ClockKind clock, ServoAnswer answer, Nanosec
   if (answer.state == ServoState::kJump) co_await step_clock(host, clock, -offset);
 }
 
-Task<CrossStamp> narrowest_cross_stamp(Host& host) {
-  CrossStamp best;
-  Nanoseconds width = Nanoseconds::max();
-  for (int i = 0; i < ClockCoupling::kCrossStamps; ++i) {
-    const CrossStamp stamp = co_await host.hardware_clock()->cross_stamp();
-    if (stamp.after - stamp.before >= width) continue;
-    best = stamp;
-    width = stamp.after - stamp.before;
-  }
-  co_return best;
-}
-
 ClockCoupling::ClockCoupling(Host& host, ClockKind follower, ServoSettings settings)
     : host_(host),
       follower_(follower),
@@ -98,6 +87,14 @@ Task<void> keep_coupled(Host& host, ClockKind follower, ServoSettings settings,
     *is_locked = coupling.is_locked();
     co_await host.sleep_for(ClockCoupling::kInterval);
   }
+}
+
+Task<void> serve_slaves_of_relay(std::vector<PeerId> slaves, std::shared_ptr<const bool> is_ready,
+                                 ServeSlave serve) {
+  std::vector<Task<void>> tasks;
+  tasks.reserve(slaves.size());
+  for (const PeerId slave : slaves) tasks.push_back(serve(slave, is_ready));
+  co_await join_all(std::move(tasks));
 }
 
 Task<void> serve_slaves(Host& host, std::vector<PeerId> slaves, StampSource stamps,

@@ -34,12 +34,11 @@ Task<void> apply_answer(Host& host, ClockKind clock, ServoAnswer answer, Nanosec
 Task<void> set_frequency(Host& host, ClockKind clock, double ppb);
 Task<void> step_clock(Host& host, ClockKind clock, Nanoseconds offset);
 
-// phc2sys: one of a host's two clocks follows the other. Each update takes the narrowest of
-// kCrossStamps cross stamps and feeds it to a PI servo with the constants of hardware stamps.
+// phc2sys: one of a host's two clocks follows the other. Each update takes the narrowest of several
+// cross stamps (cross_stamps.h) and feeds it to a PI servo with the constants of hardware stamps.
 // The host must have a hardware clock, and outlive this.
 class ClockCoupling {
  public:
-  static constexpr int kCrossStamps = 5;
   static constexpr Nanoseconds kInterval{1'000'000'000};
 
   // `settings` without its interval, which is kInterval.
@@ -67,7 +66,9 @@ using ServeSlave = std::function<Task<void>(PeerId slave, std::shared_ptr<const 
 Task<void> serve_slaves(Host& host, std::vector<PeerId> slaves, StampSource stamps,
                         ServoSettings settings, ServeSlave serve);
 
-// The narrowest of ClockCoupling::kCrossStamps readings. The host must have a hardware clock.
-Task<CrossStamp> narrowest_cross_stamp(Host& host);
+// The same on a host that follows another: the clock that stamps is steered by its slave's side,
+// which says when it is ready.
+Task<void> serve_slaves_of_relay(std::vector<PeerId> slaves, std::shared_ptr<const bool> is_ready,
+                                 ServeSlave serve);
 
 }  // namespace simbench

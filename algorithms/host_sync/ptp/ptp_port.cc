@@ -137,7 +137,7 @@ Task<void> PtpSlave::run() {
       next_request = now + from_ms(factor * to_ms(settings_.delay_interval));
       co_await ask();
     }
-    if (coupling_ && is_locked_ && next_coupling == SteadyTime::max()) next_coupling = now;
+    if (coupling_ && *is_locked_ && next_coupling == SteadyTime::max()) next_coupling = now;
     if (now >= next_coupling) {
       next_coupling = now + ClockCoupling::kInterval;
       co_await coupling_->update();
@@ -233,7 +233,7 @@ Task<void> PtpSlave::correct() {
       servo_->sample(static_cast<double>(offset->count()), offset_.sync()->t2, 1);
   co_await apply_answer(host_, clock_of(settings_.stamps), answer, *offset);
   if (answer.state == ServoState::kUnlocked) co_return;
-  is_locked_ = true;
+  *is_locked_ = true;
   if (answer.state != ServoState::kJump) co_return;
   // Stamps from before the step are of another clock.
   offset_.forget_sync();
@@ -252,7 +252,7 @@ void PtpSlave::report(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::in
 
 void PtpSlave::report_outcome_if_due() {
   if (outcome_.is_reported()) return;
-  if (coupling_ ? coupling_->is_locked() : is_locked_) return outcome_.synchronised(corrections_);
+  if (coupling_ ? coupling_->is_locked() : *is_locked_) return outcome_.synchronised(corrections_);
   const Nanoseconds waited = host_.steady_clock().now() - begin_;
   if (waited < start_up_time(settings_)) return;
   outcome_.failed(corrections_, "the servo has not locked after " +

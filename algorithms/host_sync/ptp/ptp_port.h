@@ -136,6 +136,8 @@ class PtpSlave {
 
   // Never ends, unless the host lacks the stamps.
   Task<void> run();
+  // Whether the clock that stamps follows the master.
+  std::shared_ptr<const bool> is_locked() const { return is_locked_; }
 
  private:
   // One message of a pair, while the other is to come.
@@ -170,7 +172,7 @@ class PtpSlave {
   std::optional<PtpMessage> sync_follow_up_;
   std::optional<Half> peer_response_;
   std::optional<PtpMessage> peer_follow_up_;
-  bool is_locked_ = false;
+  std::shared_ptr<bool> is_locked_ = std::make_shared<bool>(false);
   std::uint32_t corrections_ = 0;
   SteadyTime begin_{};
   OutcomeReport outcome_;

@@ -40,7 +40,7 @@ struct PathEnd final : Endpoint {
     }
     network.inbox(path).clear();
   }
-  void on_left(MessageId, std::size_t, TrueTime) override {}
+  void on_left(MessageId, std::size_t, const HostDeparture&) override {}
 
   SimNetwork& network;
   PathId path;

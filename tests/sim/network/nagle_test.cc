@@ -28,7 +28,7 @@ class NagleTest : public testing::Test {
       network_.inbox(path_).clear();
       if (replies) send(8);
     }
-    void on_left(MessageId, std::size_t count, TrueTime) override {
+    void on_left(MessageId, std::size_t count, const HostDeparture&) override {
       left_ms.insert(left_ms.end(), count, ms_of(engine_.now()));
     }
 

@@ -58,7 +58,7 @@ class Probe : public Endpoint {
     }
     network_.inbox(path_).clear();
   }
-  void on_left(MessageId first, std::size_t count, TrueTime) override {
+  void on_left(MessageId first, std::size_t count, const HostDeparture&) override {
     EXPECT_EQ(first, left_ms.size());
     left_ms.insert(left_ms.end(), count, ms_of(engine_.now()));
   }

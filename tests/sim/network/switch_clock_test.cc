@@ -187,7 +187,9 @@ struct LinkEnd final : Endpoint {
     for (ArrivedMessage& message : network.inbox(path)) arrived.push_back(std::move(message));
     network.inbox(path).clear();
   }
-  void on_left(MessageId, std::size_t, TrueTime at) override { passed.push_back(at); }
+  void on_left(MessageId, std::size_t, const HostDeparture& departure) override {
+    passed.push_back(departure.passed);
+  }
 
   SimNetwork& network;
   PathId path;

@@ -1,0 +1,177 @@
+#include "evaluation/reality/reality.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using scenarios::Override;
+using scenarios::RealitySetting;
+using scenarios::RealRecording;
+
+// The settings of one scenario share its runs.
+struct World {
+  std::string scenario;
+  std::vector<Override> set;
+  std::vector<std::size_t> settings;  // by number in the recording
+};
+
+std::vector<World> worlds_of(const RealRecording& recording) {
+  std::vector<World> worlds;
+  for (std::size_t i = 0; i < recording.settings.size(); ++i) {
+    const RealitySetting& setting = recording.settings[i];
+    const auto same = std::ranges::find_if(worlds, [&](const World& world) {
+      return world.scenario == setting.scenario &&
+             std::ranges::equal(world.set, setting.set, [](const Override& a, const Override& b) {
+               return a.pointer == b.pointer && a.value == b.value;
+             });
+    });
+    if (same != worlds.end()) {
+      same->settings.push_back(i);
+    } else {
+      worlds.push_back({setting.scenario, setting.set, {i}});
+    }
+  }
+  return worlds;
+}
+
+double value_us(const RealitySetting& setting, const HostTimeErrors& errors) {
+  using enum scenarios::RealityQuantity;
+  const bool is_pair = setting.quantity == kPairMedianAbsTe || setting.quantity == kPairP95AbsTe;
+  const bool is_median = setting.quantity == kMedianAbsTe || setting.quantity == kPairMedianAbsTe;
+  const HostTe& host = (is_pair ? errors.to_master : errors.to_truth).at(setting.host);
+  return 1e3 * (is_median ? host.median_abs_ms : host.p95_abs_ms);
+}
+
+class Comparison {
+ public:
+  Comparison(const RealRecording& recording, const ClockWorldFactory& make_world,
+             const RealityOptions& options, const Progress& progress)
+      : recording_(recording),
+        make_world_(make_world),
+        options_(options),
+        progress_(progress),
+        worlds_(worlds_of(recording)) {
+    for (const RealitySetting& setting : recording.settings) rows_.push_back({.setting = &setting});
+  }
+
+  std::vector<RealityRow> run() {
+    plan();
+    for (const World& world : worlds_) predict(world);
+    if (!options_.spans_unknown) return std::move(rows_);
+    for (const World& world : worlds_) {
+      for (const scenarios::UnknownParameter& parameter : recording_.unknown) {
+        if (!has(world, parameter)) continue;
+        for (const std::string& value : parameter.values) span(world, parameter, value);
+      }
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  // Counts the runs to come.
+  void plan() {
+    all_ = worlds_.size();
+    if (!options_.spans_unknown) return;
+    for (const World& world : worlds_) {
+      for (const scenarios::UnknownParameter& parameter : recording_.unknown) {
+        if (has(world, parameter)) all_ += parameter.values.size();
+      }
+    }
+  }
+
+  // Whether the scenario has that member: a load that is not there has none.
+  static bool has(const World& world, const scenarios::UnknownParameter& parameter) {
+    if (parameter.pointer.starts_with("/algorithms/")) return true;
+    const std::vector<scenarios::ParameterLine> lines =
+        describe(scenarios::load_scenario(world.scenario, world.set));
+    return std::ranges::any_of(lines, [&](const scenarios::ParameterLine& line) {
+      return line.pointer == parameter.pointer;
+    });
+  }
+
+  // Runs the world with that on top.
+  void run_world(const World& world, const std::vector<Override>& more) {
+    std::vector<Override> set = world.set;
+    set.insert(set.end(), more.begin(), more.end());
+    const scenarios::Scenario scenario = scenarios::load_scenario(world.scenario, set);
+    ClockOptions run{.duration_s = recording_.duration_s,
+                     .from_s = recording_.from_s,
+                     .seeds = options_.seeds > 0 ? options_.seeds : recording_.seeds,
+                     .jobs = options_.jobs,
+                     .pipelines = {},
+                     .cancel = options_.cancel};
+    for (const std::size_t i : world.settings) {
+      const std::string& pipeline = recording_.settings[i].pipeline;
+      if (std::ranges::count(run.pipelines, pipeline) == 0) run.pipelines.push_back(pipeline);
+    }
+    pipelines_ = run.pipelines;
+    ClockResults results = evaluate_clocks(
+        scenario, [&] { return make_world_(scenario); }, run, nullptr);
+    if (progress_) progress_(++done_, all_);
+    seeds_ = std::move(results.hosts);
+  }
+
+  // The values of a setting by seed, in the last runs.
+  std::vector<double> values_us(const RealitySetting& setting) const {
+    const auto row = static_cast<std::size_t>(std::ranges::find(pipelines_, setting.pipeline) -
+                                              pipelines_.begin());
+    std::vector<double> values;
+    for (const HostTimeErrors& seed : seeds_.at(row)) values.push_back(value_us(setting, seed));
+    return values;
+  }
+
+  void predict(const World& world) {
+    run_world(world, {});
+    for (const std::size_t i : world.settings) {
+      rows_[i].predicted_us = values_us(recording_.settings[i]);
+    }
+  }
+
+  void span(const World& world, const scenarios::UnknownParameter& parameter,
+            const std::string& value) {
+    run_world(world, {{.pointer = parameter.pointer, .value = value}});
+    for (const std::size_t i : world.settings) {
+      rows_[i].spans.push_back({.parameter = &parameter,
+                                .value = value,
+                                .predicted_us = median(values_us(recording_.settings[i]))});
+    }
+  }
+
+  const RealRecording& recording_;
+  const ClockWorldFactory& make_world_;
+  const RealityOptions& options_;
+  const Progress& progress_;
+  std::vector<World> worlds_;
+  std::vector<RealityRow> rows_;
+  std::vector<std::string> pipelines_;              // of the last runs
+  std::vector<std::vector<HostTimeErrors>> seeds_;  // of the last runs: by row, by seed
+  std::size_t done_ = 0;
+  std::size_t all_ = 0;
+};
+
+}  // namespace
+
+double RealityRow::measured_us() const { return median(setting->measured_us); }
+double RealityRow::least_measured_us() const {
+  return *std::ranges::min_element(setting->measured_us);
+}
+double RealityRow::largest_measured_us() const {
+  return *std::ranges::max_element(setting->measured_us);
+}
+double RealityRow::median_us() const { return median(predicted_us); }
+
+bool RealityRow::is_within() const { return std::max(ratio(), 1 / ratio()) <= setting->factor; }
+
+std::vector<RealityRow> compare_with_reality(const RealRecording& recording,
+                                             const ClockWorldFactory& make_world,
+                                             const RealityOptions& options,
+                                             const Progress& progress) {
+  return Comparison(recording, make_world, options, progress).run();
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,73 @@
+// Recordings of real rigs whose truth an instrument measured, as published figures, and the
+// scenarios that predict them (scenarios/reality/*.json, whose schema documents every member; built
+// into the program).
+//
+// A new recording is a new file in that folder, without any other change. Its scenarios take their
+// parameters from documents alone; a figure that was known when a mechanism was chosen says so, and
+// does not count.
+//
+//   simbench reality
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenarios/choices.h"
+#include "scenarios/loader.h"
+
+namespace simbench::scenarios {
+
+// Of the time errors of a host in a run: against true time, or against the master.
+enum class RealityQuantity : std::uint8_t {
+  kMedianAbsTe,
+  kP95AbsTe,
+  kPairMedianAbsTe,
+  kPairP95AbsTe
+};
+constexpr auto words_of(RealityQuantity) {
+  using enum RealityQuantity;
+  return std::to_array<Word<RealityQuantity>>({{kMedianAbsTe, "median_abs_te"},
+                                               {kP95AbsTe, "p95_abs_te"},
+                                               {kPairMedianAbsTe, "pair_median_abs_te"},
+                                               {kPairP95AbsTe, "pair_p95_abs_te"}});
+}
+
+struct RealitySetting {
+  std::string name;
+  std::string scenario;
+  std::vector<Override> set;
+  std::string pipeline;
+  std::size_t host = 1;
+  RealityQuantity quantity = RealityQuantity::kMedianAbsTe;
+  std::vector<double> measured_us;  // of each stretch or device
+  double factor = 0;                // within which the prediction is to lie
+  std::string used_for;             // what was chosen knowing it; empty: it counts
+};
+
+// A parameter that the publication does not give.
+struct UnknownParameter {
+  std::string what;
+  std::string pointer;
+  std::string nominal;
+  std::vector<std::string> values;  // JSON
+  std::string source;
+};
+
+struct RealRecording {
+  std::string name;
+  std::string title;
+  std::string source;
+  std::string instrument;
+  std::uint64_t duration_s = 0;
+  std::uint64_t from_s = 0;
+  std::uint64_t seeds = 0;
+  std::vector<RealitySetting> settings;
+  std::vector<UnknownParameter> unknown;
+};
+
+// In alphabetical order.
+const std::vector<RealRecording>& real_recordings();
+
+}  // namespace simbench::scenarios
