@@ -64,6 +64,7 @@ class HostGroup {
   std::size_t size() const { return hosts_.size(); }
   SimHost& host(std::size_t index) { return hosts_[index]; }
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
+  const std::deque<SystemClock>& all_clocks() const { return clocks_; }
   std::vector<SystemClock*> clocks();
 
   // The times of faults count from now; leap seconds come as the clocks read their instants.

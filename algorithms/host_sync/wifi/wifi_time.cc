@@ -46,7 +46,9 @@ class Follower {
   Follower(Host& host, const WifiTimeSettings& settings, bool is_slave)
       : host_(host), clock_(host, settings.steering), outcome_(host), is_slave_(is_slave) {}
 
+  // A coarse clock is known the better, the more often it was read.
   Task<void> steer(ClockLine line) {
+    co_await clock_.look();
     co_await clock_.steer(line);
     ++tries_;
     if (is_slave_) outcome_.synchronised(tries_);
