@@ -18,6 +18,7 @@
   FILE(HostSyncEntry, host_sync_huygens)                          \
   FILE(HostSyncEntry, host_sync_common_view)                      \
   FILE(HostSyncEntry, host_sync_gnss)                             \
+  FILE(HostSyncEntry, host_sync_wifi)                             \
   FILE(HostSyncEntry, host_sync_ntp)                              \
   FILE(HostSyncEntry, host_sync_w32time)                          \
   FILE(HostSyncEntry, host_sync_chrony)                           \

@@ -42,6 +42,8 @@ enum class Need : std::uint8_t {
   kPps,             // Host::pulse_input(PulseLine::kPps)
   kGnss,            // PulseStamp::gnss on that line
   kTriggerLine,     // Host::pulse_input(PulseLine::kTrigger)
+  kTsf,             // RadioClock::read_tsf()
+  kFtm,             // RadioClock::measure_ftm()
   kFrames,          // Host::frame_feed()
   kFrameControl,    // Host::frame_controls()
   kPolls,           // polls of the cameras' clocks in the recording

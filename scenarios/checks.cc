@@ -191,6 +191,18 @@ void check_stack(const Scenario& scenario) {
   check_delay_law(scenario, "/hosts/stack/wake_up", stack.wake_up);
 }
 
+void check_radio_laws(const Scenario& scenario) {
+  const std::optional<Wifi>& wifi = scenario.network.wifi;
+  if (wifi && wifi->tsf) {
+    check_delay_law(scenario, "/network/wifi/tsf/read_before", wifi->tsf->read_before);
+    check_delay_law(scenario, "/network/wifi/tsf/read_after", wifi->tsf->read_after);
+  }
+  if (wifi && wifi->ftm) {
+    check_delay_law(scenario, "/network/wifi/ftm/counter_before", wifi->ftm->counter_before);
+    check_delay_law(scenario, "/network/wifi/ftm/counter_after", wifi->ftm->counter_after);
+  }
+}
+
 void check_switches(const Scenario& scenario) {
   const Network& network = scenario.network;
   check_size(scenario, "/network/switch_of_host", network.switch_of_host.size(), "switches",
@@ -541,6 +553,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_links(scenario);
   check_switches(scenario);
   check_wifi(scenario);
+  check_radio_laws(scenario);
   check_stack(scenario);
   check_cpu_load(scenario);
   check_load(scenario);

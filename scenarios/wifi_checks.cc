@@ -41,6 +41,21 @@ void check_cell_numbers(const Scenario& scenario, const Wifi& wifi) {
             fmt::format("found {}, allowed at most rate_mbit_per_s, {}", wifi.basic_rate_mbit_per_s,
                         wifi.rate_mbit_per_s));
   }
+  const double up = wifi.uplink_rate_mbit_per_s.value_or(wifi.rate_mbit_per_s);
+  if (wifi.basic_rate_mbit_per_s > up) {
+    fail_at(scenario, "/network/wifi/uplink_rate_mbit_per_s",
+            fmt::format("found {}, allowed at least basic_rate_mbit_per_s, {}", up,
+                        wifi.basic_rate_mbit_per_s));
+  }
+}
+
+// A cell has one schedule of beacons.
+void check_beacons(const Scenario& scenario, const Wifi& wifi) {
+  if (!wifi.tsf || !wifi.tsf->beacon_interval_ms || !wifi.power_save) return;
+  if (*wifi.tsf->beacon_interval_ms == wifi.power_save->beacon_interval_ms) return;
+  fail_at(scenario, "/network/wifi/tsf/beacon_interval_ms",
+          fmt::format("found {}, allowed power_save's, {}, or nothing",
+                      *wifi.tsf->beacon_interval_ms, wifi.power_save->beacon_interval_ms));
 }
 
 // The model of the cell has none of these.
@@ -73,6 +88,7 @@ void check_wifi(const Scenario& scenario) {
   if (!scenario.network.wifi) return;
   check_cell_hosts(scenario, *scenario.network.wifi);
   check_cell_numbers(scenario, *scenario.network.wifi);
+  check_beacons(scenario, *scenario.network.wifi);
   check_beside_cell(scenario);
 }
 

@@ -174,6 +174,7 @@ struct StoredFrequency {
 };
 
 class FrameControl;
+class RadioClock;
 
 class Host {
  public:
@@ -186,6 +187,8 @@ class Host {
   virtual HardwareClock* hardware_clock() { return nullptr; }
   virtual PulseInput* pulse_input(PulseLine /*line*/) { return nullptr; }
   virtual FrameFeed* frame_feed() { return nullptr; }
+  // The clock of its Wi-Fi radio (radio_clock.h).
+  virtual RadioClock* radio_clock() { return nullptr; }
   // The controls of its cameras, in the order of their numbers; none where cameras have none
   // (frame_control.h).
   virtual std::span<FrameControl* const> frame_controls() { return {}; }

@@ -8,6 +8,7 @@
 //   HostTime    what a host's system clock reads: set, stepped and slewed by synchronisation
 //   SteadyTime  what a host's oscillator counts: never set, never stepped (deadlines, intervals)
 //   HardwareTime  what a network card's own clock counts (a PTP hardware clock)
+//   TsfTime     what a Wi-Fi access point counts, which its beacons tell
 //   DeviceTime  what a camera's clock counts, unwrapped; its 32-bit register is DeviceStamp
 //   GlobalTime  the common time that device_time assigns to a frame: the master host's system time
 //
@@ -38,6 +39,9 @@ struct HostSteady {
 struct Hardware {
   using duration = Nanoseconds;
 };
+struct Tsf {
+  using duration = Nanoseconds;
+};
 struct Device {
   using duration = Microseconds;
 };
@@ -49,6 +53,7 @@ struct Global {
 using HostTime = std::chrono::time_point<time_base::HostSystem>;
 using SteadyTime = std::chrono::time_point<time_base::HostSteady>;
 using HardwareTime = std::chrono::time_point<time_base::Hardware>;
+using TsfTime = std::chrono::time_point<time_base::Tsf>;
 using DeviceTime = std::chrono::time_point<time_base::Device>;
 using GlobalTime = std::chrono::time_point<time_base::Global>;
 

@@ -98,6 +98,9 @@ const char* lacking(Need need) {
       return "a GNSS receiver's pulses";
     case Need::kTriggerLine:
       return "the trigger line wired into the host";
+    case Need::kTsf:
+    case Need::kFtm:
+      return "a Wi-Fi radio whose time a program can use";
     case Need::kTruth:
       return "the truth";
     case Need::kPolls:

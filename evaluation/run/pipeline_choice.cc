@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "algorithms/parameters.h"
@@ -165,6 +166,24 @@ void check_relays(const Scenario& scenario, std::size_t index, const PipelineCho
                                  choice.pipeline.host_sync, fmt::join(known, ", ")));
 }
 
+// What it lacks of a radio whose time programs can use; `member` of the cell says whether they can.
+std::string lacking_radio(const Scenario& scenario, const char* member, bool is_stated) {
+  const std::optional<scenarios::Wifi>& wifi = scenario.network.wifi;
+  if (!wifi) {
+    return fmt::format("an access point for its stations (there is no /network/wifi; state a cell "
+                       "with \"{}\", or choose a host_sync that sends messages)",
+                       member);
+  }
+  if (!is_stated) {
+    return fmt::format("stations that can use the access point's time (there is no "
+                       "/network/wifi/{}; state it)",
+                       member);
+  }
+  if (wifi->wired_hosts.empty()) return "";
+  return fmt::format("a radio in every host (/network/wifi/wired_hosts has host {}; take it out)",
+                     wifi->wired_hosts.front());
+}
+
 // What the scenario lacks of an algorithm's need; empty if nothing.
 std::string lacking(const Scenario& scenario, Need need) {
   const scenarios::PulseLines& lines = scenario.hosts.pulse_lines;
@@ -179,6 +198,10 @@ std::string lacking(const Scenario& scenario, Need need) {
       return lines.gnss ? "" : "a GNSS receiver (/hosts/pulse_lines/gnss is false)";
     case Need::kTriggerLine:
       return lines.trigger ? "" : "the trigger wired in (/hosts/pulse_lines/trigger is false)";
+    case Need::kTsf:
+      return lacking_radio(scenario, "tsf", scenario.network.wifi && scenario.network.wifi->tsf);
+    case Need::kFtm:
+      return lacking_radio(scenario, "ftm", scenario.network.wifi && scenario.network.wifi->ftm);
     case Need::kFrameControl:
       return scenario.cameras.frame_control
                  ? ""

@@ -59,6 +59,8 @@ Need need_of(const std::string& name) {
                                                     {"pps", Need::kPps},
                                                     {"gnss", Need::kGnss},
                                                     {"trigger_line", Need::kTriggerLine},
+                                                    {"tsf", Need::kTsf},
+                                                    {"ftm", Need::kFtm},
                                                     {"frames", Need::kFrames},
                                                     {"frame_control", Need::kFrameControl},
                                                     {"polls", Need::kPolls},
@@ -66,8 +68,8 @@ Need need_of(const std::string& name) {
   const auto found = needs.find(name);
   if (found != needs.end()) return found->second;
   throw py::value_error(
-      fmt::format("needs: found '{}', allowed: hardware_stamps, pps, gnss, trigger_line, frames, "
-                  "frame_control, polls, host_stamps",
+      fmt::format("needs: found '{}', allowed: hardware_stamps, pps, gnss, trigger_line, tsf, ftm, "
+                  "frames, frame_control, polls, host_stamps",
                   name));
 }
 

@@ -68,6 +68,8 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
       drift_files_(scenario.hosts, run_seed, clocks_) {
   SIMBENCH_ASSERT(scenario.hosts.count >= 1, "a rig has a master");
   if (!traffic_.is_none()) network_.meet(traffic_);
+  const std::optional<scenarios::Wifi>& wifi = scenario.network.wifi;
+  if (wifi && (wifi->tsf || wifi->ftm)) access_point_.emplace(*wifi, run_seed, clocks_);
   const HostWorld world{.context = context,
                         .hosts = scenario.hosts,
                         .network_parameters = scenario.network,
@@ -78,7 +80,8 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                         .drift_files = drift_files_,
                         .frames = frames_,
                         .sink = sink,
-                        .run_seed = run_seed};
+                        .run_seed = run_seed,
+                        .access_point = access_point_ ? &*access_point_ : nullptr};
   const std::vector<std::size_t> cameras = scenario.cameras_by_host();
   for (PeerId id = 0; id < static_cast<PeerId>(scenario.hosts.count); ++id) {
     make_clock(scenario.hosts, run_seed, initial_clocks);

@@ -26,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,7 @@
 #include "sim/host/drift_files.h"
 #include "sim/host/frame_supply.h"
 #include "sim/host/pulse_lines.h"
+#include "sim/host/radio_clock.h"
 #include "sim/host/sim_host.h"
 #include "sim/network/load.h"
 #include "sim/network/network.h"
@@ -65,6 +67,7 @@ class HostGroup {
   PeerId followed(PeerId slave) const { return scenarios::followed_host(parameters_, slave); }
   SimHost& host(std::size_t index) { return hosts_[index]; }
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
+  const std::deque<SystemClock>& all_clocks() const { return clocks_; }
   std::vector<SystemClock*> clocks();
 
   // The times of faults count from now; leap seconds come as the clocks read their instants.
@@ -94,6 +97,7 @@ class HostGroup {
   SimNetwork network_;
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;
+  std::optional<AccessPoint> access_point_;  // in a cell whose time programs can use
   DriftFiles drift_files_;
   FrameSupply frames_;
   std::deque<SimHost> hosts_;

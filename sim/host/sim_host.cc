@@ -67,6 +67,13 @@ PulseInput* SimHost::pulse_input(PulseLine line) {
   return input.get();
 }
 
+RadioClock* SimHost::radio_clock() {
+  const AccessPoint* const access_point = world_.access_point;
+  if (access_point == nullptr || !access_point->has_radio(id_)) return nullptr;
+  if (radio_ == nullptr) radio_ = std::make_unique<SimRadioClock>(*this, *access_point);
+  return radio_.get();
+}
+
 void SimHost::trigger_started() {
   if (trigger_ != nullptr) trigger_->source_changed();
 }

@@ -5,8 +5,9 @@
 // oscillator, sleep_until follows its system clock and is re-armed at each adjustment. Adjustments,
 // exchanges and outcomes go to the recording sink as they happen.
 //
-// The card's clock (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h) and the feed of
-// its cameras' frames exist only if the scenario or a program uses them. None costs an event while
+// The card's clock (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h), the radio's clock
+// (sim/host/radio_clock.h) and the feed of its cameras' frames exist only if the scenario or a
+// program uses them. None costs an event while
 // no coroutine waits.
 //
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
@@ -54,6 +55,7 @@
 #include "sim/host/host_clocks.h"
 #include "sim/host/message_stack.h"
 #include "sim/host/pulse_lines.h"
+#include "sim/host/radio_clock.h"
 #include "sim/network/load.h"
 #include "sim/network/network.h"
 
@@ -101,6 +103,7 @@ struct HostWorld {
   FrameSupply& frames;
   RecordingSink& sink;
   std::uint64_t run_seed;
+  const AccessPoint* access_point = nullptr;  // null: no radio has a clock for programs
 };
 
 class SimHost final : public Host {
@@ -117,6 +120,7 @@ class SimHost final : public Host {
   HardwareClock* hardware_clock() override;
   PulseInput* pulse_input(PulseLine line) override;
   FrameFeed* frame_feed() override;
+  RadioClock* radio_clock() override;
   std::span<FrameControl* const> frame_controls() override { return control_ports_; }
   std::optional<StoredFrequency> stored_frequency() override;
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
@@ -197,6 +201,7 @@ class SimHost final : public Host {
   PpsReceiver receiver_;
   std::unique_ptr<SimPulseInput> pps_;
   std::unique_ptr<SimPulseInput> trigger_;
+  std::unique_ptr<SimRadioClock> radio_;
   std::unique_ptr<SimFrameFeed> frame_feed_;
   std::vector<std::unique_ptr<SimFrameControl>> controls_;
   std::vector<FrameControl*> control_ports_;  // the same

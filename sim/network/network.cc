@@ -132,7 +132,7 @@ HostDeparture SimNetwork::leave_host(PeerId from, bool passes_a_port, Nanosecond
       .passed = passes_a_port ? host_ports_[from].pass(at_card, on_the_line(segment)) : at_card};
 }
 
-bool SimNetwork::is_dropped(const Passage& traffic, const Segment& segment) const {
+bool SimNetwork::is_dropped(const TrafficPassage& traffic, const Segment& segment) const {
   if (traffic.loss_share <= 0) return false;
   const Path& path = paths_[segment.path];
   RandomStream draw = KeyedStreams(run_seed_, kBufferDraws)
@@ -186,7 +186,7 @@ void SimNetwork::replicate(const GroupMessage& message, TrueTime at) {
     copy.path = recipient.path;
     copy.first = recipient.id;
     copy.is_counted = std::exchange(is_counted, false);
-    const Passage traffic = traffic_at(to, at);
+    const TrafficPassage traffic = traffic_at(to, at);
     const bool is_lost = is_dropped(traffic, copy);
     const SegmentId id = keep(std::move(copy));
     if (is_lost) {
@@ -200,12 +200,12 @@ void SimNetwork::replicate(const GroupMessage& message, TrueTime at) {
   const auto ports = 2 * static_cast<std::size_t>(here);
   if (!down.recipients.empty()) {
     down.segment.is_counted = std::exchange(is_counted, false);
-    const Passage traffic = traffic_at_trunk(here, false, at);
+    const TrafficPassage traffic = traffic_at_trunk(here, false, at);
     forward(std::move(down), pass_behind(traffic, trunk_ports_[ports], at, duration));
   }
   if (!up.recipients.empty()) {
     up.segment.is_counted = is_counted;
-    const Passage traffic = traffic_at_trunk(here, true, at);
+    const TrafficPassage traffic = traffic_at_trunk(here, true, at);
     forward(std::move(up), pass_behind(traffic, trunk_ports_[ports + 1], at, duration));
   }
 }
@@ -352,7 +352,7 @@ void SimNetwork::pass_switch(SegmentId id, TrueTime at) {
   const std::int64_t here = segment.switch_number;
   const bool is_last = here == switch_of(path.to);
   const bool is_up = switch_of(path.to) > here;
-  const Passage traffic = is_last ? traffic_at(path.to, at) : traffic_at_trunk(here, is_up, at);
+  const TrafficPassage traffic = is_last ? traffic_at(path.to, at) : traffic_at_trunk(here, is_up, at);
   if (is_dropped(traffic, segment)) {
     if (path.transport != Transport::kStream) return drop(id);
     segment.sent_again_after += from_ms(parameters_.retransmit_timeout_ms);

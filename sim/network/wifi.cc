@@ -9,7 +9,6 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kBusyChannel("wifi: bursts on the channel");
-constexpr ComponentKey kBeaconPhase("wifi: phase of the beacons");
 
 // QoS data header 26, LLC and SNAP 8, frame check 4, less Ethernet's header of 14.
 constexpr double kBytesBeyondEthernet = 24;
@@ -26,6 +25,7 @@ WifiCell::WifiCell(Engine& engine, const scenarios::Wifi& wifi, std::uint64_t ru
       difs_(from_us(wifi.sifs_us + 2 * wifi.slot_us)),
       acknowledgement_(from_us(wifi.sifs_us + wifi.preamble_us) +
                        LineRate(wifi.basic_rate_mbit_per_s).duration(kAcknowledgementBytes)),
+      beacons_(wifi, run_seed),
       bursts_(wifi.busy, run_seed, kBusyChannel, 0),
       stations_(hosts),
       contends_at_(hosts + 1, TrueTime::min()) {
@@ -35,22 +35,11 @@ WifiCell::WifiCell(Engine& engine, const scenarios::Wifi& wifi, std::uint64_t ru
   if (wifi.access_point_host) {
     stations_[static_cast<std::size_t>(*wifi.access_point_host)].is_station = false;
   }
-  if (!wifi.power_save) return;
-  const scenarios::WifiPowerSave& save = *wifi.power_save;
-  const double period_ms = save.beacon_interval_ms * static_cast<double>(save.dtim_period);
-  beacon_period_ = from_ms(period_ms);
-  beacon_phase_ = from_ms(RandomStream(run_seed, kBeaconPhase).uniform(0, period_ms));
 }
 
 Nanoseconds WifiCell::airtime(double bytes, double rate_mbit_per_s) const {
   return from_us(wifi_.preamble_us) +
          LineRate(rate_mbit_per_s).duration(bytes + kBytesBeyondEthernet);
-}
-
-TrueTime WifiCell::next_beacon(TrueTime at) const {
-  const std::int64_t since_phase_ns = (at.time_since_epoch() - beacon_phase_).count();
-  const std::int64_t next = floor_div(since_phase_ns, beacon_period_.count()) + 1;
-  return TrueTime(beacon_phase_ + next * beacon_period_);
 }
 
 bool WifiCell::any_sleeps(TrueTime at) const {
@@ -98,9 +87,26 @@ void WifiCell::release(PeerId station_id) {
   for (const HopId id : std::exchange(station.held, {})) ready(id);
 }
 
+double WifiCell::rate_mbit_per_s(const WifiHop& hop) const {
+  if (hop.is_group) return wifi_.basic_rate_mbit_per_s;
+  return hop.is_up ? wifi_.uplink_rate_mbit_per_s.value_or(wifi_.rate_mbit_per_s)
+                   : wifi_.rate_mbit_per_s;
+}
+
+// A foreign frame meets the least contention window's mean.
+Nanoseconds WifiCell::draw_queue(const WifiHop& hop, RandomStream& draw) const {
+  if (hop.is_up || wifi_.downlink_traffic_share == 0) return Nanoseconds(0);
+  const double slots = static_cast<double>(wifi_.contention_window_min) / 2;
+  const Nanoseconds frame = difs_ + from_us(slots * wifi_.slot_us) +
+                            airtime(wifi_.downlink_frame_bytes, wifi_.rate_mbit_per_s) +
+                            acknowledgement_;
+  double wait_ms = 0;
+  while (draw.chance(wifi_.downlink_traffic_share)) wait_ms += draw.uniform(0, to_ms(frame));
+  return from_ms(wait_ms);
+}
+
 bool WifiCell::draw_attempts(const WifiHop& hop, RandomStream& draw, Nanoseconds& took) const {
-  const double rate = hop.is_group ? wifi_.basic_rate_mbit_per_s : wifi_.rate_mbit_per_s;
-  const Nanoseconds frame = airtime(hop.bytes, rate);
+  const Nanoseconds frame = airtime(hop.bytes, rate_mbit_per_s(hop));
   const std::int64_t attempts = hop.is_group ? 1 : wifi_.retry_limit;
   std::int64_t window = wifi_.contention_window_min;
   for (std::int64_t attempt = 0; attempt < attempts; ++attempt) {
@@ -123,6 +129,7 @@ WifiCell::Drawn WifiCell::drawn(const WifiHop& hop, RandomStream& draw) const {
     drawn.timeouts += from_ms(timeout_ms);
     drawn.is_lost = draw_attempts(hop, draw, drawn.timeouts);
   }
+  drawn.queued = draw_queue(hop, draw);
   return drawn;
 }
 
@@ -149,7 +156,8 @@ void WifiCell::ready(HopId id) {
   const Drawn& drawn = hops_[id];
   const std::size_t transmitter = drawn.hop.is_up ? drawn.hop.station : stations_.size();
   TrueTime& contends_at = contends_at_[transmitter];
-  contends_at = std::max(contends_at, bursts_.active(now) ? now + drawn.wait : now);
+  const TrueTime queued = now + drawn.queued;
+  contends_at = std::max(contends_at, bursts_.active(now) ? queued + drawn.wait : queued);
   if (contends_at == now) return transmit(id);
   engine_.schedule(contends_at, handler_id_, kContends, id);
 }

@@ -11,7 +11,7 @@
 // where DIFS = SIFS + 2 slots, W_1 is the least contention window and W_k + 1 doubles with each
 // attempt up to the largest; bytes are the message's, with the headers that the scenario states and
 // those that 802.11 has beyond Ethernet's. An attempt fails with the collision probability; after
-// retry_limit failures a datagram is lost. A stream sends it again after its timeout, doubled each
+// retry_limit failures a datagram is lost. The ways may have rates of their own. A stream sends it again after its timeout, doubled each
 // time, until its retransmissions are used up, and what is behind it waits. The channel serves one
 // transmission after the other in the order in which they become ready: half duplex, for all.
 //
@@ -19,6 +19,10 @@
 // transmission first waits Exp(busy/latency_ms): both directions of a link are hit together. Those
 // of one transmitter wait in order, those of several beside each other, as the foreign frames keep
 // all of them waiting at once.
+//
+// Foreign traffic of the access point: what it has for a station waits as a stationary M/D/1 queue
+// lets it, busy for downlink_traffic_share r with frames that take S each: the sum of N draws from
+// U(0, S), where P(N >= n) = r^n. What comes up does not wait, so the ways differ.
 //
 // Power save. A station sleeps idle_ms after its last transmission in either direction. What is for
 // a sleeping one is held by the access point until the next beacon with a DTIM or until the station
@@ -46,7 +50,8 @@
 // Source: IEEE 802.11-2020, 10.3.4 (DCF), 11.2.3 (power management), table 17-21 (constants; also
 // in ns-3's wifi-standard-constants.h); Bianchi, "Performance analysis of the IEEE 802.11
 // distributed coordination function", IEEE JSAC 18(3), 2000; Linux, net/mac80211
-// (dynamic_ps_timeout, ieee80211_get_buffered_bc); scenario /network/wifi. Cost: two events a
+// (dynamic_ps_timeout, ieee80211_get_buffered_bc); Kleinrock, "Queueing Systems" vol. 1, section
+// 5.7; scenario /network/wifi. Cost: two events a
 // transmission, three with a wait; memory for the hosts and the messages under way.
 //
 //   WifiCell cell(engine, wifi, seed, host_count, [](std::uint32_t ticket, bool is_lost) {});
@@ -65,6 +70,7 @@
 #include "sim/engine/engine.h"
 #include "sim/engine/random.h"
 #include "sim/engine/slots.h"
+#include "sim/network/beacons.h"
 #include "sim/network/load.h"
 #include "sim/network/port.h"
 
@@ -105,8 +111,8 @@ class WifiCell : private EventHandler {
 
   // How long the frame itself is on the air.
   Nanoseconds airtime(double bytes, double rate_mbit_per_s) const;
-  // The first beacon after `at` with a DTIM; only with power save.
-  TrueTime next_beacon(TrueTime at) const;
+  // The first beacon after `at` for which stations wake.
+  TrueTime next_beacon(TrueTime at) const { return beacons_.at(beacons_.last(at) + 1); }
 
  private:
   using HopId = std::uint32_t;
@@ -121,6 +127,7 @@ class WifiCell : private EventHandler {
   struct Drawn {
     WifiHop hop;
     Nanoseconds wait{};             // if it begins in a burst
+    Nanoseconds queued{};           // behind the access point's foreign traffic
     Nanoseconds occupied{};         // the channel, by all attempts
     Nanoseconds acknowledgement{};  // the last part of that, after the receiver has it
     Nanoseconds timeouts{};         // of a stream
@@ -141,6 +148,10 @@ class WifiCell : private EventHandler {
   void release(PeerId station);
 
   Drawn drawn(const WifiHop& hop, RandomStream& draw) const;
+  // The rate of its frames.
+  double rate_mbit_per_s(const WifiHop& hop) const;
+  // How long it waits for the access point's foreign traffic.
+  Nanoseconds draw_queue(const WifiHop& hop, RandomStream& draw) const;
   // Draws the attempts of one transmission; whether it fails.
   bool draw_attempts(const WifiHop& hop, RandomStream& draw, Nanoseconds& took) const;
 
@@ -153,8 +164,7 @@ class WifiCell : private EventHandler {
   HandlerId handler_id_;
   Nanoseconds difs_;
   Nanoseconds acknowledgement_;  // SIFS and the acknowledgement
-  Nanoseconds beacon_period_{};  // of those with a DTIM
-  Nanoseconds beacon_phase_{};
+  Beacons beacons_;
   BurstProcess bursts_;
   Port channel_;
   std::vector<Station> stations_;      // by host

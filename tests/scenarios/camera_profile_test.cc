@@ -35,8 +35,8 @@ TEST(CameraProfiles, AllAreThereInOrder) {
   std::vector<std::string> models;
   for (const CameraProfile& camera : camera_profiles()) models.push_back(camera.model);
   EXPECT_THAT(models,
-              ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "gige_ace",
-                          "l515", "oak_4", "pixel_phone", "raspberry_camera_v3"));
+              ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "esp32_camera",
+                          "gige_ace", "l515", "oak_4", "pixel_phone", "raspberry_camera_v3"));
 }
 
 TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
@@ -177,6 +177,7 @@ TEST(CameraProfiles, ControlsOfFramesThatTheMakersOffer) {
   EXPECT_EQ(offered("raspberry_camera_v3"), "adjust length ");
   EXPECT_EQ(offered("gige_ace"), "adjust length start ");
   EXPECT_EQ(offered("oak_4"), "length ");
+  EXPECT_EQ(offered("esp32_camera"), "start ");
   EXPECT_EQ(offered("azure_kinect"), "not known");
 }
 

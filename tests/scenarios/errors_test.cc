@@ -282,8 +282,8 @@ TEST(Checks, Profiles) {
 TEST(Checks, CameraModels) {
   EXPECT_EQ(error_of_set("/cameras/model", "d999"),
             "--set /cameras/model=d999: found \"d999\", allowed astra_plus, astra_s, azure_kinect, "
-            "d435, d455, gige_ace, l515, oak_4, pixel_phone, raspberry_camera_v3 (simbench list "
-            "cameras)");
+            "d435, d455, esp32_camera, gige_ace, l515, oak_4, pixel_phone, raspberry_camera_v3 "
+            "(simbench list cameras)");
   EXPECT_EQ(
       error_of_set("/cameras/model", "azure_kinect"),
       place_in_base("/cameras/sync_mode") +

@@ -87,6 +87,22 @@ TEST(WifiChecks, NumbersOfTheCell) {
             "my.json:3: /network/wifi: found true, allowed an object or null");
 }
 
+TEST(WifiChecks, RatesAndBeaconsOfACell) {
+  EXPECT_EQ(error_of(with_cell({{"uplink_rate_mbit_per_s", 5}})),
+            "my.json:3: /network/wifi/uplink_rate_mbit_per_s: found 5, allowed at least "
+            "basic_rate_mbit_per_s, 6");
+  EXPECT_EQ(error_of(with_cell({{"uplink_rate_mbit_per_s", 6}})), "");
+  nlohmann::json tsf = nlohmann::json::parse(R"({
+    "resolution_us": 1, "beacon_interval_ms": 100, "beacon_loss_probability": 0,
+    "beacon_stamp_sigma_us": 0, "receive_sigma_us": 0, "access_point_skew_sigma_ppm": 0,
+    "read_before": {"fixed_us": 1, "exponential_us": 0},
+    "read_after": {"fixed_us": 1, "exponential_us": 0}})");
+  EXPECT_EQ(error_of(with_cell({{"tsf", tsf}})),
+            "my.json:3: /network/wifi/tsf/beacon_interval_ms: found 100, allowed power_save's, "
+            "102.4, or nothing");
+  EXPECT_EQ(error_of(with_cell({{"tsf", tsf}, {"power_save", nullptr}})), "");
+}
+
 TEST(WifiChecks, WhatACellDoesNotHave) {
   EXPECT_EQ(error_of(with_cell(as_it_is(), R"(, "switch_of_host": [0, 0, 0, 1, 1, 1])")),
             "my.json:3: /network/switch_of_host: found switches in a line, allowed none beside "
