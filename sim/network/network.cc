@@ -352,7 +352,8 @@ void SimNetwork::pass_switch(SegmentId id, TrueTime at) {
   const std::int64_t here = segment.switch_number;
   const bool is_last = here == switch_of(path.to);
   const bool is_up = switch_of(path.to) > here;
-  const TrafficPassage traffic = is_last ? traffic_at(path.to, at) : traffic_at_trunk(here, is_up, at);
+  const TrafficPassage traffic =
+      is_last ? traffic_at(path.to, at) : traffic_at_trunk(here, is_up, at);
   if (is_dropped(traffic, segment)) {
     if (path.transport != Transport::kStream) return drop(id);
     segment.sent_again_after += from_ms(parameters_.retransmit_timeout_ms);

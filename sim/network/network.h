@@ -202,14 +202,17 @@ class SimNetwork : private EventHandler {
   HostDeparture leave_host(PeerId from, bool passes_a_port, Nanoseconds to_card,
                            const Segment& segment);
   // When a message that comes to the port at `at` has passed it.
-  TrueTime pass_behind(const TrafficPassage& traffic, Port& port, TrueTime at, Nanoseconds duration) {
+  TrueTime pass_behind(const TrafficPassage& traffic, Port& port, TrueTime at,
+                       Nanoseconds duration) {
     return port.pass(at + traffic.wait, duration);
   }
   TrafficPassage traffic_at(PeerId to, TrueTime at) {
     return traffic_ == nullptr ? TrafficPassage{} : traffic_->at_switch(to, at);
   }
   TrafficPassage traffic_at_trunk(std::int64_t switch_number, bool is_up, TrueTime at) {
-    return traffic_ == nullptr ? TrafficPassage{} : traffic_->at_trunk(switch_number, is_up, at);
+    return traffic_ == nullptr
+               ? TrafficPassage{}
+               : traffic_->at_trunk(static_cast<std::size_t>(switch_number), is_up, at);
   }
   // Whether a full buffer drops the segment at this switch of its way.
   bool is_dropped(const TrafficPassage& traffic, const Segment& segment) const;
