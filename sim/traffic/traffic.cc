@@ -10,6 +10,10 @@ constexpr double kStackNs = 20'000;  // of each host, both ways together
 constexpr scenarios::SendQueue kDefaultSendQueue{
     .discipline = scenarios::QueueDiscipline::kPfifoFast, .ring_kb = 30, .connection_kb = 128};
 
+constexpr ComponentKey kMinutes("traffic: TCP of a minute");
+constexpr Nanoseconds kMinute = std::chrono::minutes(1);
+constexpr Nanoseconds kLead = std::chrono::seconds(5);  // from slow start to its usual course
+
 TrueTime at_second(double seconds) { return TrueTime(from_seconds(seconds)); }
 
 }  // namespace
@@ -19,7 +23,8 @@ Traffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& host
     : host_count_(host_count),
       switch_of_host_(network.switch_of_host),
       line_bytes_per_ns_(network.bandwidth_mbit_per_s / 8'000),
-      send_queue_(hosts.send_queue.value_or(kDefaultSendQueue)) {
+      send_queue_(hosts.send_queue.value_or(kDefaultSendQueue)),
+      run_seed_(run_seed) {
   if (network.traffic.empty() || line_bytes_per_ns_ == 0) return;
   for (const std::int64_t number : switch_of_host_) {
     switch_count_ = std::max(switch_count_, static_cast<std::size_t>(number) + 1);
@@ -31,16 +36,12 @@ Traffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& host
     add(traffic, there, network);
     if (traffic.both_ways) add(traffic, {.from = there.to, .to = there.from}, network);
   }
-  std::vector<FluidPort> ports;
   std::vector<double> buffers;
   for (std::size_t port = 0; port < used_.size(); ++port) {
     if (used_[port] == kUnused) continue;
     const double buffer_bytes = port < host_count_ ? 0 : network.buffer_kb * 1e3;
-    ports.push_back({.bytes_per_ns = line_bytes_per_ns_, .buffer_bytes = buffer_bytes});
+    ports_.push_back({.bytes_per_ns = line_bytes_per_ns_, .buffer_bytes = buffer_bytes});
     buffers.push_back(buffer_bytes);
-  }
-  if (!connections_.empty()) {
-    fluid_.emplace(std::move(ports), std::move(connections_), std::move(shares_), run_seed);
   }
   if (!streams_.empty()) {
     bursts_.emplace(line_bytes_per_ns_, std::move(streams_), std::move(buffers), run_seed);
@@ -120,8 +121,25 @@ Nanoseconds Traffic::base_round_trip(Way way, const scenarios::Network& network)
   return from_ms(fixed_ms) + from_ns(on_the_lines_ns + 2 * kStackNs);
 }
 
+TcpFluid* Traffic::fluid_at(TrueTime at) {
+  if (connections_.empty()) return nullptr;
+  const std::int64_t minute = floor_div(at.time_since_epoch().count(), kMinute.count());
+  // What comes a little before the newest minute is within its lead.
+  if (fluid_ && minute <= minute_) return &*fluid_;
+  minute_ = minute;
+  const TrueTime begin = TrueTime(minute * kMinute) - kLead;
+  std::vector<FluidConnection> connections = connections_;
+  for (FluidConnection& connection : connections) {
+    connection.begin = std::max(connection.begin, begin);
+  }
+  RandomStream seed(run_seed_, kMinutes, static_cast<std::uint64_t>(minute));
+  fluid_.emplace(ports_, std::move(connections), shares_, seed());
+  return &*fluid_;
+}
+
 Nanoseconds Traffic::wait(std::size_t port, TrueTime at) {
-  const Nanoseconds behind_tcp = fluid_ ? fluid_->delay(port, at) : Nanoseconds(0);
+  TcpFluid* const tcp = fluid_at(at);
+  const Nanoseconds behind_tcp = tcp != nullptr ? tcp->delay(port, at) : Nanoseconds(0);
   const Nanoseconds behind_frames = bursts_ ? bursts_->wait(port, at) : Nanoseconds(0);
   return std::max(behind_tcp, behind_frames);
 }
@@ -149,7 +167,8 @@ TrafficPassage Traffic::passage(std::size_t port, TrueTime at) {
   const std::size_t used = used_[port];
   TrafficPassage result;
   result.wait = wait(used, at);
-  const double by_tcp = fluid_ ? fluid_->loss_share(used, at) : 0;
+  TcpFluid* const tcp = fluid_at(at);
+  const double by_tcp = tcp != nullptr ? tcp->loss_share(used, at) : 0;
   const double by_overload = bursts_ ? bursts_->overload_share(used, at) : 0;
   result.loss_share = std::max(by_tcp, by_overload);
   return result;

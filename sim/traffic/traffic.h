@@ -16,6 +16,10 @@
 // first-in-first-out one, 30 kB in its ring and 128 kB for a connection. Messages do not slow the
 // traffic.
 //
+// TCP is begun anew for each minute in which a message comes, five seconds before it, from numbers
+// of that minute alone: a message every quarter of an hour does not cost the quarter. What a fluid
+// remembers, it forgets in some hundreds of round trips.
+//
 // Contract: instants nearly in order of time (TcpFluid); the same seed gives the same waits,
 // whatever else is asked. Only ports that traffic passes take memory.
 // Source: scenario /network/traffic, /network/buffer_kb, /hosts/send_queue; docs/design.md
@@ -55,7 +59,7 @@ class Traffic {
   Traffic(const scenarios::Network& network, const scenarios::Hosts& hosts, std::uint64_t run_seed,
           std::size_t host_count);
 
-  bool is_none() const { return !fluid_ && !bursts_; }
+  bool is_none() const { return connections_.empty() && !bursts_; }
 
   // A message that host `host` sends then.
   HostWait at_host(PeerId host, TrueTime at);
@@ -91,6 +95,8 @@ class Traffic {
   void add(const scenarios::Traffic& traffic, Way way, const scenarios::Network& network);
   Nanoseconds base_round_trip(Way way, const scenarios::Network& network) const;
   Nanoseconds wait(std::size_t port, TrueTime at);
+  // The fluid of that minute; none without TCP.
+  TcpFluid* fluid_at(TrueTime at);
   TrafficPassage passage(std::size_t port, TrueTime at);
   double overload_share(std::size_t port) const;
 
@@ -100,10 +106,13 @@ class Traffic {
   double line_bytes_per_ns_;
   scenarios::SendQueue send_queue_;
   std::vector<std::uint32_t> used_;  // the number of each port among those in use
+  std::uint64_t run_seed_;
+  std::vector<FluidPort> ports_;
   std::vector<FluidConnection> connections_;
   std::vector<FluidShare> shares_;
   std::vector<BurstStream> streams_;
-  std::optional<TcpFluid> fluid_;
+  std::optional<TcpFluid> fluid_;  // of the newest minute that was asked for
+  std::int64_t minute_ = 0;        // its number
   std::optional<FrameBursts> bursts_;
 };
 
