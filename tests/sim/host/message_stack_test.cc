@@ -231,5 +231,50 @@ TEST(MessageStack, StampsAreTakenBetweenTheParts) {
   EXPECT_NEAR(us_of(*got->received_hardware - sent_by_card - apart), 100, 0.01);
 }
 
+scenarios::Hosts busy_hosts() {
+  scenarios::Hosts hosts;
+  hosts.count = 2;
+  hosts.cpu_load = scenarios::CpuLoad{.cold_after_ms = 10,
+                                      .cold_transmit = {.fixed_us = 20},
+                                      .cold_wake_up = {.fixed_us = 30},
+                                      .wake_up = {.fixed_us = 3},
+                                      .receive = {.fixed_us = 2}};
+  return hosts;
+}
+
+TEST(MessageStack, ABusyProcessorsFirstStepIsCold) {
+  MessageStack stack(busy_hosts(), kStackSeed, 0);
+  const TrueTime start{};
+  EXPECT_EQ(us_of(stack.transmit(start, {1, 0})), 20);
+  EXPECT_EQ(us_of(stack.transmit(start + from_ms(1), {1, 1})), 0) << "warm";
+  EXPECT_EQ(us_of(stack.wake_up(start + from_ms(2), {2, 0})), 3) << "warm, but scheduled";
+  EXPECT_EQ(us_of(stack.wake_up(start + from_ms(20), {2, 1})), 33) << "cold again";
+  EXPECT_EQ(us_of(stack.transmit(start + from_ms(29), {1, 2})), 0);
+  EXPECT_EQ(us_of(stack.transmit(start + from_ms(39.1), {1, 3})), 20);
+  EXPECT_EQ(stack.receive(start + from_ms(50), {2, 2}), start + from_ms(50) + from_us(2));
+}
+
+TEST(MessageStack, AnIdleHostHasNoneOfTheLoad) {
+  scenarios::Hosts hosts = busy_hosts();
+  hosts.cpu_load.reset();
+  MessageStack stack(hosts, kStackSeed, 0);
+  EXPECT_EQ(stack.transmit({}, {1, 0}), Nanoseconds(0));
+  EXPECT_EQ(stack.wake_up({}, {1, 0}), Nanoseconds(0));
+  EXPECT_EQ(stack.receive({}, {1, 0}), TrueTime{});
+}
+
+TEST(MessageStack, TheLoadOfAHostIsItsOwn) {
+  scenarios::Hosts hosts = busy_hosts();
+  hosts.cpu_load->host_log_sigma = 0.5;
+  std::vector<double> logs;
+  for (PeerId host = 0; host < 2000; ++host) {
+    MessageStack stack(hosts, kStackSeed, host);
+    logs.push_back(std::log(us_of(stack.transmit({}, {1, 0})) / 20));
+  }
+  double squares = 0;
+  for (const double log : logs) squares += log * log;
+  EXPECT_NEAR(std::sqrt(squares / 2000), 0.5, 0.03) << "seed " << kStackSeed;
+}
+
 }  // namespace
 }  // namespace simbench::sim

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/parameters.h"
 #include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "recording/recording.h"
@@ -387,6 +388,53 @@ TEST(ClockSimulation, WhatASynchronisationThrowsArrives) {
                                            .duration = seconds(60),
                                            .interval = seconds(1)}),
                std::runtime_error);
+}
+
+// A chain of four exact hosts whose programs are cold: 40 us before a request leaves, 60 us before
+// a server reads its clock.
+scenarios::Scenario cold_chain() {
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.hosts.count = 4;
+  scenario.hosts.follows = {0, 0, 1, 2};
+  scenario.hosts.clock.initial_offset_of_host_ms = {0, 20, -30, 40};
+  scenario.hosts.nic = {.hardware_stamps = true, .stamp_resolution_ns = 1};
+  scenario.hosts.cpu_load = scenarios::CpuLoad{
+      .cold_after_ms = 10, .cold_transmit = {.fixed_us = 40}, .cold_wake_up = {.fixed_us = 60}};
+  return scenario;
+}
+
+std::vector<double> errors_of_chain(const std::string& host_sync) {
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(host_sync);
+  const auto sync = entry->make(check_parameters(entry->info.parameters, {}));
+  const Kept kept = read_clocks(cold_chain(), {.pipeline = "chain",
+                                               .host_sync = sync.get(),
+                                               .duration = seconds(7200),
+                                               .interval = seconds(60)});
+  return kept.clocks.at(7200);
+}
+
+TEST(ClockSimulation, AChainAddsTheErrorOfEachHop) {
+  const std::vector<double> errors_s = errors_of_chain("chrony_sw");
+  for (std::size_t host = 1; host < 4; ++host) {
+    EXPECT_NEAR(errors_s[host], 50e-6 * static_cast<double>(host), 2e-6) << "host " << host;
+  }
+}
+
+TEST(ClockSimulation, TheCardsStampsKnowNothingOfTheProgram) {
+  for (const double error_s : errors_of_chain("chrony_hw_xleave")) EXPECT_NEAR(error_s, 0, 1e-7);
+}
+
+TEST(ClockSimulation, WithoutInterleavingTheServersDepartureIsItsPrograms) {
+  // The answer is warm: its program needs no time in this world.
+  for (const double error_s : errors_of_chain("chrony_hw")) EXPECT_NEAR(error_s, 0, 1e-7);
+}
+
+TEST(ClockSimulation, ABoundaryClockServesWhatItFollows) {
+  for (const char* host_sync : {"ptp_e2e_hardware", "ptp_p2p_hardware", "ntp"}) {
+    const std::vector<double> errors_s = errors_of_chain(host_sync);
+    const double bound_s = std::string(host_sync) == "ntp" ? 1e-3 : 1e-6;
+    for (const double error_s : errors_s) EXPECT_NEAR(error_s, 0, bound_s) << host_sync;
+  }
 }
 
 }  // namespace
