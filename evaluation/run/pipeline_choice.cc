@@ -149,14 +149,16 @@ void check_can_be_made(const Scenario& scenario, const PipelineChoice& choice) {
 std::string lacking_radio(const Scenario& scenario, const char* member, bool is_stated) {
   const std::optional<scenarios::Wifi>& wifi = scenario.network.wifi;
   if (!wifi) {
-    return fmt::format("an access point for its stations (there is no /network/wifi; state a cell "
-                       "with \"{}\", or choose a host_sync that sends messages)",
-                       member);
+    return fmt::format(
+        "an access point for its stations (there is no /network/wifi; state a cell "
+        "with \"{}\", or choose a host_sync that sends messages)",
+        member);
   }
   if (!is_stated) {
-    return fmt::format("stations that can use the access point's time (there is no "
-                       "/network/wifi/{}; state it)",
-                       member);
+    return fmt::format(
+        "stations that can use the access point's time (there is no "
+        "/network/wifi/{}; state it)",
+        member);
   }
   if (wifi->wired_hosts.empty()) return "";
   return fmt::format("a radio in every host (/network/wifi/wired_hosts has host {}; take it out)",

@@ -22,9 +22,8 @@ namespace simbench::sim {
 class Beacons {
  public:
   Beacons(const scenarios::Wifi& wifi, std::uint64_t run_seed) {
-    const double step_ms = interval_ms(wifi) * static_cast<double>(
-                                                   wifi.power_save ? wifi.power_save->dtim_period
-                                                                   : 1);
+    const double step_ms =
+        interval_ms(wifi) * static_cast<double>(wifi.power_save ? wifi.power_save->dtim_period : 1);
     step_ = from_ms(step_ms);
     phase_ = from_ms(RandomStream(run_seed, kPhase).uniform(0, step_ms));
   }

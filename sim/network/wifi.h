@@ -11,9 +11,10 @@
 // where DIFS = SIFS + 2 slots, W_1 is the least contention window and W_k + 1 doubles with each
 // attempt up to the largest; bytes are the message's, with the headers that the scenario states and
 // those that 802.11 has beyond Ethernet's. An attempt fails with the collision probability; after
-// retry_limit failures a datagram is lost. The ways may have rates of their own. A stream sends it again after its timeout, doubled each
-// time, until its retransmissions are used up, and what is behind it waits. The channel serves one
-// transmission after the other in the order in which they become ready: half duplex, for all.
+// retry_limit failures a datagram is lost. The ways may have rates of their own. A stream sends it
+// again after its timeout, doubled each time, until its retransmissions are used up, and what is
+// behind it waits. The channel serves one transmission after the other in the order in which they
+// become ready: half duplex, for all.
 //
 // Contention. In a burst of foreign traffic, a process in true time of the whole cell, each
 // transmission first waits Exp(busy/latency_ms): both directions of a link are hit together. Those
