@@ -60,9 +60,8 @@ AccessPoint::AccessPoint(const scenarios::Wifi& wifi, std::uint64_t run_seed,
 }
 
 bool AccessPoint::has_radio(PeerId host) const {
-  return host == device_ ||
-         std::ranges::find(wifi_.wired_hosts, static_cast<std::int64_t>(host)) ==
-             wifi_.wired_hosts.end();
+  return host == device_ || std::ranges::find(wifi_.wired_hosts, static_cast<std::int64_t>(host)) ==
+                                wifi_.wired_hosts.end();
 }
 
 std::optional<std::int64_t> AccessPoint::last_heard(TrueTime t, PeerId station) const {
@@ -84,9 +83,9 @@ std::optional<TsfTime> AccessPoint::copy_at(TrueTime t, PeerId station,
   const auto number = static_cast<std::uint64_t>(*heard);
   const TrueTime beacon = beacons_.at(*heard);
   RandomStream stamp_draw(run_seed_, kBeaconStamp, number);
-  const Nanoseconds stamp = counted(
-      at(beacon).time_since_epoch(), stamp_draw.normal(tsf.beacon_stamp_sigma_us * kNsPerUs),
-      resolution_ns);
+  const Nanoseconds stamp =
+      counted(at(beacon).time_since_epoch(),
+              stamp_draw.normal(tsf.beacon_stamp_sigma_us * kNsPerUs), resolution_ns);
   RandomStream receipt_draw(run_seed_, kBeaconReceipt, station, number);
   const double error_ns = receipt_draw.normal(tsf.receive_sigma_us * kNsPerUs);
   const Nanoseconds since = clock.steady(t) - clock.steady(beacon);
@@ -137,9 +136,8 @@ Task<std::optional<TsfReading>> SimRadioClock::read_tsf() {
     count = access_point_.copy_at(call.touch, host_.id(), clock);
   }
   if (!count) co_return std::nullopt;
-  co_return TsfReading{.before = clock.steady(call.turn.start),
-                       .tsf = *count,
-                       .after = clock.steady(call.turn.end)};
+  co_return TsfReading{
+      .before = clock.steady(call.turn.start), .tsf = *count, .after = clock.steady(call.turn.end)};
 }
 
 Task<std::optional<CounterReading>> SimRadioClock::read_counter() {

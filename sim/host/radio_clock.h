@@ -7,9 +7,9 @@
 // TSF. A beacon carries the access point's counter with an error N(beacon_stamp_sigma_us), rounded
 // down to resolution_us; one draw a beacon, the same for all that hear it. A station that hears it
 // sets its copy to it, with an error N(receive_sigma_us) of its own, and counts on by its own
-// oscillator until the next one; it misses each with beacon_loss_probability, independently. Of two
-// oscillators d ppm apart the copies are thus d * interval / 2 wrong on average. A call reads the
-// copy read_before after its begin, returns read_after later, and occupies the CPU meanwhile.
+// oscillator until the next one; it misses each with beacon_loss_probability, independently. Where
+// two oscillators are d ppm apart, the copy is thus d * interval / 2 wrong on average. A call reads
+// the copy read_before after its begin, returns read_after later, and occupies the CPU meanwhile.
 //
 // FTM. A session takes session_ms and has its exchanges at even spaces; the answer leaves SIFS and
 // a preamble after the frame came. Stamps of transmissions are exact, those of receptions late by
@@ -81,9 +81,7 @@ class AccessPoint {
   PeerId device() const { return device_; }
   bool has_radio(PeerId host) const;
 
-  TsfTime at(TrueTime t) const {
-    return TsfTime(counter_.at(t, clock()).time_since_epoch());
-  }
+  TsfTime at(TrueTime t) const { return TsfTime(counter_.at(t, clock()).time_since_epoch()); }
   // What a station's copy of it reads at `t`, by the last beacon that it has heard; nothing if it
   // has heard none of the last kBeaconsRemembered. Only with /network/wifi/tsf.
   std::optional<TsfTime> copy_at(TrueTime t, PeerId station, const SystemClock& clock) const;

@@ -5,10 +5,9 @@
 // oscillator, sleep_until follows its system clock and is re-armed at each adjustment. Adjustments,
 // exchanges and outcomes go to the recording sink as they happen.
 //
-// The card's clock (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h), the radio's clock
-// (sim/host/radio_clock.h) and the feed of its cameras' frames exist only if the scenario or a
-// program uses them. None costs an event while
-// no coroutine waits.
+// The card's clock (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h), the radio's
+// clock (sim/host/radio_clock.h) and the feed of its cameras' frames exist only if the scenario or
+// a program uses them. None costs an event while no coroutine waits.
 //
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
 //

@@ -35,9 +35,9 @@ TEST(Builtin, AllAreThereInOrder) {
                   "18cam_6host_45fps_wander_and_ramp", "18cam_6host_45fps_windows_tick",
                   "18cam_6host_45fps_wrong_t_int", "18cam_6host_90fps_full_slave",
                   "25cam_led_30fps", "2glasses_wifi_30fps", "3cam_1host_30fps",
-                  "4cam_wifi_ftm_10fps", "4oak_poe_30fps", "5phone_wifi_30fps", "6cam_2host_30fps", "6cam_gige_ptp_60fps", "6host_lan_day",
-                  "6host_star", "6node_relay", "8cam_raspberry_30fps",
-                  "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
+                  "4cam_wifi_ftm_10fps", "4oak_poe_30fps", "5phone_wifi_30fps", "6cam_2host_30fps",
+                  "6cam_gige_ptp_60fps", "6host_lan_day", "6host_star", "6node_relay",
+                  "8cam_raspberry_30fps", "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
                   "leaderboard_gathering", "leaderboard_lan", "leaderboard_lan_ideal_calibration",
                   "leaderboard_programs", "leaderboard_without_cables", "pulse_index_off_by_two",
                   "scale_18000cam_6000host_45fps"));

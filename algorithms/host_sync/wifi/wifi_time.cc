@@ -88,9 +88,8 @@ Task<void> follow_tsf(Host& host, WifiTimeSettings settings, bool is_slave) {
     if (reading && fit) {
       const SteadyTime now = host.steady_clock().now();
       const Nanoseconds steady = now.time_since_epoch();
-      const ClockLine line{.at = now,
-                           .value = HostTime(steady + fit->ahead(steady)),
-                           .rate_ppb = fit->rate() * 1e9};
+      const ClockLine line{
+          .at = now, .value = HostTime(steady + fit->ahead(steady)), .rate_ppb = fit->rate() * 1e9};
       co_await follower.steer(line);
     } else {
       follower.heard_nothing("no beacon of the access point; is it in reach?");
@@ -101,8 +100,8 @@ Task<void> follow_tsf(Host& host, WifiTimeSettings settings, bool is_slave) {
 
 // The TSF over the steady clock, by way of the radio's counter; `tsf` is nothing at the access
 // point, whose counter is the TSF.
-ClockLine line_through(const CounterLine::Fit& counter,
-                       const std::optional<CounterLine::Fit>& tsf, SteadyTime now) {
+ClockLine line_through(const CounterLine::Fit& counter, const std::optional<CounterLine::Fit>& tsf,
+                       SteadyTime now) {
   const Nanoseconds steady = now.time_since_epoch();
   const Nanoseconds counts = steady + counter.ahead(steady);
   double rate = counter.rate();

@@ -124,6 +124,35 @@ TEST(WifiCellTest, AirtimeIsThePreambleAndTheBytes) {
   EXPECT_NEAR(to_us(cell.cell().airtime(1500, 6)), 20 + 8 * 1524 / 6.0, 1e-3);
 }
 
+// A two-way estimate is half of the difference of the ways wrong.
+TEST(WifiCellTest, WaysOfUnequalRatesDifferByTheirFrames) {
+  scenarios::Wifi wifi = fixed_cell();
+  wifi.uplink_rate_mbit_per_s = 6;
+  Cell up(wifi);
+  Cell down(wifi);
+  const double up_us = mean_of(delays_us(up, {.station = 1, .is_up = true, .bytes = 100}, 10, 10));
+  const double down_us =
+      mean_of(delays_us(down, {.station = 1, .is_up = false, .bytes = 100}, 10, 10));
+  EXPECT_NEAR(up_us - down_us, 8 * 124 / 6.0 - 8 * 124 / 54.0, 0.01);
+}
+
+// The mean wait in an M/D/1 queue is r S / (2 (1 - r)): Pollaczek and Khinchine.
+TEST(WifiCellTest, TheWayDownWaitsForTheAccessPointsTraffic) {
+  scenarios::Wifi wifi = fixed_cell();
+  wifi.downlink_traffic_share = 0.5;
+  wifi.downlink_frame_bytes = 1500;
+  Cell up(wifi);
+  Cell down(wifi);
+  const double idle_us = kDifsUs + frame_us(100);
+  const double service_us = kDifsUs + frame_us(1500) + kAckUs;
+  constexpr std::uint32_t kCount = 20'000;
+  const double waits_us =
+      mean_of(delays_us(down, {.station = 1, .is_up = false, .bytes = 100}, kCount, 20)) - idle_us;
+  EXPECT_NEAR(waits_us, service_us / 2, 0.05 * service_us / 2) << "seed " << kCellSeed;
+  EXPECT_NEAR(mean_of(delays_us(up, {.station = 1, .is_up = true, .bytes = 100}, 100, 20)), idle_us,
+              0.01);
+}
+
 // DIFS, 0 to 15 slots with the same probability, the frame.
 TEST(WifiCellTest, AnIdleChannelTakesDifsABackoffAndTheFrame) {
   Cell cell(quiet_cell());
