@@ -122,7 +122,7 @@ class SteadyPort final : public SteadyClock {
 // A call occupies the host's CPU for cross_stamp_cost_ms and reads, steps or adjusts the card in
 // the middle of that. The system clock of a cross stamp is read at the beginning and at the end, as
 // the kernel does, on its ticks but not rounded to the interface's resolution. Changes of rate must
-// stay below 5e8 ppb.
+// stay within max_adjustment_ppm.
 //
 // Messages are stamped by their last bit at both ends: when it passes the sender's port, behind
 // what was queued there, and when it reaches the receiver, before anything wakes up.
@@ -136,6 +136,7 @@ class NicClock final : public HardwareClock {
   // As step(), to a reading.
   Task<void> set(HardwareTime value);
   Task<void> adjust_frequency(double ppb) override;
+  double max_frequency_ppb() const override;
 
   // The stamp of an event at `at`, with noise from `draw`.
   HardwareTime stamp(TrueTime at, RandomStream& draw) const;
