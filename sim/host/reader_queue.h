@@ -2,14 +2,14 @@
 //
 // The program takes a frame as soon as it is there and the last one is done with, which lasts
 // frame_ms. Frames that come meanwhile wait, at most queue_frames of them; a further one drops the
-// oldest or is dropped itself. Of the frames that it takes, the first and then one in passed_every
-// is passed on.
+// oldest or is dropped itself. The first frame that it takes and then one in passed_every is passed
+// on.
 //
 // Frames arrive in order of time. What becomes of a frame is told as soon as no later arrival can
 // change it: read_before(t) tells of all that are taken before t, if nothing arrives before t any
-// more. With a period T below frame_ms, T / frame_ms of the frames are taken, and in the long run
-// each has waited (queue_frames + 1) * frame_ms less at most a period [derived: D/D/1 with a finite
-// queue]; the tests are of this.
+// more. With a period T below frame_ms, T / frame_ms of the frames are taken, and where the newest
+// is dropped, each has waited queue_frames * frame_ms less at most T in the long run, since one is
+// let in as soon as one comes after another was taken [derived]; the tests are of this.
 // Source: librealsense, src/concurrency.h (single_consumer_queue); V4L2, VIDIOC_QBUF; GenTL,
 // StreamBufferHandlingMode. Cost: O(1) a frame.
 //

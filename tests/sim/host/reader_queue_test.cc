@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "tests/nonempty.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 namespace {
 
 using scenarios::FullQueue;
 using Outcomes = std::vector<ReaderQueue::Outcome>;
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 // `frames` frames, one every `period_ms`.
 Outcomes run(const scenarios::FrameReader& reader, std::uint32_t frames, double period_ms) {
