@@ -34,6 +34,8 @@ enum class FrameFate : std::uint8_t {
   kDelivered,
   kLostInCamera,  // never offered to the bus; nothing after exposure_end is known
   kLostOnUsb,     // refused by a full controller; nothing after `offered` is known
+  kLostInQueue,   // of the program that takes the frames, at `delivered`
+  kNotPassed,     // taken by a program that passes on one in so many
 };
 
 struct ObservedFrame {

@@ -76,10 +76,21 @@ void check_hosts(const Scenario& scenario) {
              cameras.count, "cameras");
 }
 
-void check_skews(const Scenario& scenario) {
+// Lists with a value for each camera.
+void check_lists_of_cameras(const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   check_size(scenario, "/cameras/skew_of_camera_ppm", cameras.skew_of_camera_ppm.size(), "skews",
              cameras.count, "cameras");
+  check_size(scenario, "/trigger/delay_of_camera_us", scenario.trigger.delay_of_camera_us.size(),
+             "delays", cameras.count, "cameras");
+  const char* const epochs = "/cameras/stamp_epoch_of_camera_s";
+  check_size(scenario, epochs, cameras.stamp_epoch_of_camera_s.size(), "epochs", cameras.count,
+             "cameras");
+  if (cameras.stamp_epoch_of_camera_s.empty() || cameras.stamp_clock == ClockOwner::kHost) return;
+  fail_at(
+      scenario, epochs,
+      "found epochs, allowed none where /cameras/stamp_clock is \"camera\": such a clock begins "
+      "anywhere (/cameras/clock_epoch_max_ms)");
 }
 
 void check_host_clocks(const Scenario& scenario) {
@@ -444,8 +455,28 @@ const CameraProfile& checked_profile(const Scenario& scenario) {
                       fmt::join(models, ", ")));
 }
 
-// Slaves follow pulses close to their mode rate; of faster ones they answer some (warnings.cc). An
-// evaluated stream that runs free keeps its mode rate, which must then be the evaluated rate.
+// What helps against pulses that a mode is too slow for: a mode of that size that the pulses are
+// near, else a slower trigger; genlock where the camera has it.
+std::string help_against_fast_pulses(const CameraProfile& camera, const Stream& stream,
+                                     double rate_hz) {
+  std::vector<double> rates;
+  for (const double offered :
+       camera.stream(stream.kind)->find_size(stream.width, stream.height)->rates_hz) {
+    const PulseWindow window(offered);
+    if (!window.is_slower(rate_hz) && !window.is_faster(rate_hz)) rates.push_back(offered);
+  }
+  std::string help = rates.empty()
+                         ? fmt::format("no mode of {}x{} is as fast", stream.width, stream.height)
+                         : fmt::format("a mode of {} Hz would follow", fmt::join(rates, " or "));
+  if (camera.sync_mode(SyncMode::kGenlock) != nullptr) {
+    help += ", and genlock answers a part of any pulses";
+  }
+  return help;
+}
+
+// Slaves follow pulses close to their mode rate; what they do with faster ones is not documented
+// (docs/reference/d455.md section 2). An evaluated stream that runs free keeps its mode rate, which
+// must then be the evaluated rate.
 void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
                      const std::string& pointer, const Stream& stream) {
   const std::vector<double>& rates = camera.sync_rates_hz;
@@ -460,13 +491,17 @@ void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
   if (!follows_trigger && stream.kind != scenario.evaluation.stream) return;
   const double rate = scenario.trigger.pulse_rate_hz();
   const PulseWindow window(stream.mode_rate_hz);
-  if (!window.is_slower(rate) && (follows_trigger || !window.is_faster(rate))) return;
-  fail_at(scenario, "/trigger/rate_hz",
-          fmt::format("found {:.6g} Hz, allowed {} in sync mode \"{}\" with a {} Hz mode", rate,
-                      follows_trigger ? fmt::format("at least {:.6g} Hz", window.slowest_hz)
-                                      : fmt::format("{:.6g} to {:.6g} Hz", window.slowest_hz,
-                                                    window.fastest_hz),
-                      to_text(mode), stream.mode_rate_hz));
+  const bool is_faster = window.is_faster(rate);
+  if (!window.is_slower(rate) && !is_faster) return;
+  fail_at(
+      scenario, "/trigger/rate_hz",
+      fmt::format("found {:.6g} Hz, allowed {:.6g} to {:.6g} Hz in sync mode \"{}\" with a {} "
+                  "Hz mode{}",
+                  rate, window.slowest_hz, window.fastest_hz, to_text(mode), stream.mode_rate_hz,
+                  follows_trigger && is_faster
+                      ? ": what a slave does with faster pulses is not documented; " +
+                            help_against_fast_pulses(camera, stream, rate)
+                      : ""));
 }
 
 // The model and its sync mode, the sizes and rates of the streams.
@@ -548,7 +583,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_values(scenario, document);
   check_frames(scenario);
   check_host_clocks(scenario);
-  check_skews(scenario);
+  check_lists_of_cameras(scenario);
   check_tables(scenario);
   check_links(scenario);
   check_switches(scenario);

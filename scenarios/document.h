@@ -64,6 +64,10 @@ struct Place {
 class Places final : public Origin {
  public:
   std::string describe(const std::string& pointer) const override;
+  bool is_set(const std::string& pointer) const override { return nearest(pointer).is_set; }
+  bool is_of_a_users_file(const std::string& pointer) const override {
+    return !nearest(pointer).is_builtin && !is_set(pointer);
+  }
 
   // The place of `pointer`, else of its nearest ancestor that has one.
   const Place& nearest(const std::string& pointer) const;

@@ -17,6 +17,7 @@
 #include "scenarios/changes.h"
 #include "scenarios/document.h"
 #include "scenarios/included_pipelines.h"
+#include "scenarios/merge.h"
 #include "scenarios/oscillator_class.h"
 #include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
@@ -293,36 +294,6 @@ json pipelines_of(Source source, std::vector<std::string> files) {
   return layers.empty() ? json::array() : layers.back().root["pipelines"];
 }
 
-bool has_null(const json& value) {
-  return value.is_null() || (value.is_object() && std::ranges::any_of(value, has_null));
-}
-
-// RFC 7386, for the values and their places.
-void merge(const std::string& pointer, const json& patch, const Places& patch_places, json& target,
-           Places& places) {
-  const bool is_whole = !target.is_object() && !has_null(patch);
-  if (!patch.is_object() || is_whole) {
-    target = patch;
-    places.erase(pointer);
-    places.adopt(pointer, patch_places);
-    return;
-  }
-  if (!target.is_object()) {
-    target = json::object();
-    places.erase(pointer);
-  }
-  places.set(pointer, patch_places.nearest(pointer));
-  for (const auto& [key, value] : patch.items()) {
-    const std::string child = child_pointer(pointer, key);
-    if (value.is_null()) {
-      target.erase(key);
-      places.erase(child);
-    } else {
-      merge(child, value, patch_places, target[key], places);
-    }
-  }
-}
-
 // A scenario as one of its files leaves it, before later files and overrides.
 struct SourceLayer {
   std::size_t level = 0;
@@ -416,8 +387,8 @@ void drop_outlived_results(Resolved& resolved) {
 
 void derive(Resolved& resolved);
 
-// Validates every file of a user's by itself, merges it over its base (RFC 7386: objects are
-// merged, anything else is replaced, null removes), applies the overrides in their order, then the
+// Validates every file of a user's by itself, merges it over its base (merge.h), applies the
+// overrides in their order, then the
 // classes of oscillators, and validates the whole, unless it is a built-in scenario as it stands.
 // Drops inherited published results whose pipelines or worlds are gone. Throws InputError.
 Resolved resolve(Source source, const std::vector<Override>& overrides) {
@@ -427,7 +398,7 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
       layer.root.erase(key);
       layer.places.erase('/' + key);
     }
-    merge("", layer.root, layer.places, resolved.document, *resolved.places);
+    merge_patch(layer.root, layer.places, resolved.document, *resolved.places);
     const Place& file = layer.places.nearest("");
     json document = resolved.document;
     Places places = *resolved.places;

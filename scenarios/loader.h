@@ -44,6 +44,9 @@ class Origin {
   virtual ~Origin() = default;
   // "FILE:LINE: /pointer" (or "--set /pointer") of the nearest known place.
   virtual std::string describe(const std::string& pointer) const = 0;
+  // Whether that place is a --set, or a file that is none of the distribution's.
+  virtual bool is_set(const std::string& /*pointer*/) const { return false; }
+  virtual bool is_of_a_users_file(const std::string& /*pointer*/) const { return false; }
 };
 
 // `name_or_path`: a built-in scenario's name, or a path to a .json file. Throws InputError.

@@ -1,6 +1,6 @@
 // The rates of pulses that slaves follow surely. Intel's page on external synchronisation calls the
 // window "so strict" without its size: 1 % around the mode's rate is an assumption. A scenario with
-// slower pulses is refused, faster ones are a warning.
+// other pulses is refused.
 //
 //   const PulseWindow window(/*mode_rate_hz=*/90);
 //   const bool is_too_fast = window.is_faster(scenario.trigger.pulse_rate_hz());  // than 90.9 Hz

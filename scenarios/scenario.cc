@@ -59,6 +59,11 @@ std::int64_t Scenario::pulses_per_frame(const Stream& stream) const {
   return std::max<std::int64_t>(1, std::llround(std::ceil(pulses * (1 - kRounding))));
 }
 
+std::int64_t Scenario::pulses_per_passed_frame(const Stream& stream) const {
+  const std::int64_t passed_every = hosts.frame_reader ? hosts.frame_reader->passed_every : 1;
+  return pulses_per_frame(stream) * passed_every;
+}
+
 double Scenario::frame_rate_hz(const Stream& stream) const {
   if (!cameras.follows_trigger(stream)) return stream.mode_rate_hz;
   return trigger.pulse_rate_hz() / static_cast<double>(pulses_per_frame(stream));

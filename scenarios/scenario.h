@@ -113,6 +113,8 @@ struct Scenario {
   // A stream answers one of so many pulses, if its exposures leave it the time: 1 mostly, and of a
   // stream that does not follow the trigger.
   std::int64_t pulses_per_frame(const Stream& stream) const;
+  // As many as its program passes on, for those that follow the trigger (/hosts/frame_reader).
+  std::int64_t pulses_per_passed_frame(const Stream& stream) const;
   // The rate at which a stream delivers frames if none is lost.
   double frame_rate_hz(const Stream& stream) const;
 };

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/builtin_files.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/frequency_limit.h"
 #include "scenarios/loader.h"
-#include "scenarios/pulse_window.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -91,19 +91,31 @@ void warn_about_shared_usb(Lines& lines, const Scenario& scenario, std::int64_t 
   }
 }
 
+// Whether somebody other than the distribution has said this: by --set, or in a file that is no
+// copy of a built-in scenario, as archives have them.
+bool is_stated(const Scenario& scenario, const std::string& pointer) {
+  if (std::ranges::count(scenario.derivation.changes, pointer, &Change::pointer) > 0) return true;
+  if (scenario.origin->is_set(pointer)) return true;
+  return std::ranges::count(builtin_files(), scenario.name, &BuiltinFile::name) == 0 &&
+         scenario.origin->is_of_a_users_file(pointer);
+}
+
 // Where each camera has the whole bandwidth, no number of cameras is too many.
 void warn_about_dedicated_usb(Lines& lines, const Scenario& scenario) {
   constexpr const char* kPointer = "/usb/cameras_per_controller";
-  const std::vector<Change>& changes = scenario.derivation.changes;
-  const bool is_changed = std::ranges::count(changes, kPointer, &Change::pointer) > 0;
+  const std::int64_t stated = scenario.usb.cameras_per_controller;
+  const bool is_count_stated = stated > 1 && is_stated(scenario, kPointer);
+  const bool is_sharing_stated = stated > 1 && is_stated(scenario, "/usb/sharing");
   const std::int64_t most = most_cameras_on_a_host(scenario);
-  if (!is_changed && most <= kKnownToWork) return;
-  warn(lines, is_changed ? kPointer : "/usb/sharing",
+  if (!is_count_stated && !is_sharing_stated && most <= kKnownToWork) return;
+  const std::string what =
+      is_count_stated || is_sharing_stated
+          ? fmt::format("{} (found {}, allowed 1, which is what that means)", kPointer, stated)
+          : fmt::format("that {} are on a host", cameras_text(most));
+  warn(lines, is_count_stated ? kPointer : "/usb/sharing",
        fmt::format("each camera has {:g} MB/s of its own (/usb/sharing is \"dedicated\"), so "
                    "{} changes nothing: \"fair\" and \"fifo\" share a controller",
-                   scenario.usb.bandwidth_mb_per_s,
-                   is_changed ? "/usb/cameras_per_controller"
-                              : fmt::format("that {} are on a host", cameras_text(most))));
+                   scenario.usb.bandwidth_mb_per_s, what));
 }
 
 void warn_about_usb(Lines& lines, const Scenario& scenario) {
@@ -117,30 +129,49 @@ void warn_about_usb(Lines& lines, const Scenario& scenario) {
   }
 }
 
-// Pulses that come too fast for the mode of a stream, which never expose it.
+// The program that takes the frames: what it has no time for, and what it does not pass on.
+void warn_about_reader(Lines& lines, const Scenario& scenario) {
+  if (!scenario.hosts.frame_reader) return;
+  const FrameReader& reader = *scenario.hosts.frame_reader;
+  for (const Stream& stream : scenario.cameras.streams) {
+    const double period_ms = 1e3 / scenario.frame_rate_hz(stream);
+    if (reader.frame_ms <= period_ms) continue;
+    warn_of_loss(
+        lines, "/hosts/frame_reader/frame_ms",
+        fmt::format("the program is busy with a frame of {} for {:g} ms and gets one each {:.4g} "
+                    "ms: {} wait, then {:.3g} % are lost; allowed at most {:.4g} ms, or fewer "
+                    "frames/s",
+                    to_text(stream.kind), reader.frame_ms, period_ms, reader.queue_frames,
+                    100 * (1 - period_ms / reader.frame_ms), period_ms));
+  }
+  if (reader.passed_every == 1) return;
+  warn(lines, "/hosts/frame_reader/passed_every",
+       fmt::format("the program passes on one frame in {} by its own count, which a lost frame "
+                   "shifts against the other cameras'{}",
+                   reader.passed_every,
+                   scenario.cameras.common_start
+                       ? ""
+                       : "; cameras that start at different pulses pass on different ones"));
+}
+
+// Pulses that come too fast for genlock in the mode of a stream, which never expose it.
 void warn_about_pulses(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const double rate = scenario.trigger.pulse_rate_hz();
-  const bool is_genlock = cameras.sync_mode == SyncMode::kGenlock;
+  if (cameras.sync_mode != SyncMode::kGenlock) return;
   for (const Stream& stream : cameras.streams) {
     if (!cameras.follows_trigger(stream)) continue;
     const std::int64_t pulses = scenario.pulses_per_frame(stream);
-    const PulseWindow window(stream.mode_rate_hz);
-    if (is_genlock ? pulses == 1 : !window.is_faster(rate)) continue;
+    if (pulses == 1) continue;
     warn_of_loss(
         lines, "/trigger/rate_hz",
-        fmt::format("{} in a {} Hz mode ignores pulses for {} less the guard of {:g}, and so "
-                    "follows at most {:.6g} Hz: of {:.6g} Hz it answers one pulse in {}, {:.6g} "
-                    "frames/s of {}{}{}",
-                    to_text(cameras.sync_mode), stream.mode_rate_hz,
-                    is_genlock ? "two mode periods" : "a mode period",
-                    cameras.genlock_guard_fraction, scenario.fastest_pulses_hz(stream), rate,
-                    pulses, scenario.frame_rate_hz(stream), to_text(stream.kind),
-                    is_genlock ? " (librealsense #12560)"
-                               : fmt::format("; what a real one does beyond {:.6g} Hz is not "
-                                             "documented",
-                                             window.fastest_hz),
-                    pulses > 1 && !cameras.common_start
+        fmt::format("genlock in a {} Hz mode ignores pulses for two mode periods less the guard of "
+                    "{:g}, and so follows at most {:.6g} Hz: of {:.6g} Hz it answers one pulse in "
+                    "{}, {:.6g} frames/s of {} (librealsense #12560){}",
+                    stream.mode_rate_hz, cameras.genlock_guard_fraction,
+                    scenario.fastest_pulses_hz(stream), rate, pulses,
+                    scenario.frame_rate_hz(stream), to_text(stream.kind),
+                    !cameras.common_start
                         ? "; cameras that start at different pulses expose at different ones"
                         : ""));
   }
@@ -349,6 +380,7 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
 Lines all_warnings(const Scenario& scenario) {
   Lines lines;
   warn_about_usb(lines, scenario);
+  warn_about_reader(lines, scenario);
   warn_about_pulses(lines, scenario);
   warn_about_exposure(lines, scenario);
   warn_about_shutters(lines, scenario);
@@ -379,6 +411,7 @@ std::vector<std::string> loss_reasons(const Scenario& scenario) {
   if (scenario.cameras.streams.empty()) return reasons;  // of files: no world is stated
   Lines lines;
   warn_about_usb(lines, scenario);
+  warn_about_reader(lines, scenario);
   warn_about_pulses(lines, scenario);
   warn_about_exposure(lines, scenario);
   for (const Warning& warning : lines) {

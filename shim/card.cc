@@ -65,7 +65,7 @@ int card_ioctl(unsigned long what, void* argument) {
     case PTP_CLOCK_GETCAPS2: {
       auto& capabilities = *static_cast<ptp_clock_caps*>(argument);
       capabilities = {};
-      capabilities.max_adj = kMostCardRate;
+      capabilities.max_adj = identity().most_card_rate;
       return 0;
     }
     case PTP_SYS_OFFSET:

@@ -117,6 +117,7 @@ struct Identity {
   std::uint32_t first_address = 0;  // of "host0"
   std::uint32_t hosts = 0;
   std::uint32_t has_card_clock = 0;  // 0 or 1
+  std::int32_t most_card_rate = 0;   // ppb, what the card's driver states
   std::uint32_t only_clock = 0;      // 0 or 1: sockets, waits and chance are the machine's
 };
 
@@ -145,7 +146,6 @@ struct Expiration {
 
 // The clock of the network card, where a clockid is asked for; no clock has this number.
 inline constexpr std::int64_t kCardClock = -1;
-inline constexpr std::int32_t kMostCardRate = 62'499'999;  // ppb
 
 // A reading of the card's clock between two of the system's.
 struct CardSample {

@@ -85,6 +85,8 @@ class SteeredClock {
   // clocks count as equal.
   HostTime at(SteadyTime when) const;
   SteadyTime when(HostTime reading) const;
+  // A reading that is off by no more than this is explained by rounding, else by a step.
+  Nanoseconds uncertainty() const { return largest_plausible_fall(); }
 
   Task<void> steer(ClockLine line);
   // How far the clock is ahead of a line now.

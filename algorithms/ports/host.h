@@ -49,6 +49,9 @@ class HostClock {
   virtual Task<void> set(HostTime value) = 0;
   // Rate correction against the oscillator, replacing the previous one.
   virtual Task<void> adjust_frequency(double ppb) = 0;
+  // The largest that adjust_frequency() takes, either way. Linux: 500 ppm by the frequency and 10 %
+  // by the tick (adjtimex(2); linuxptp's clockadj_max_freq(), chronyd).
+  virtual double max_frequency_ppb() const { return 100e6; }
   // Adds `offset` gradually, at no more than `max_rate_ppb`, replacing an unfinished slew; an
   // offset of 0 only ends that.
   virtual Task<void> slew(Nanoseconds offset, double max_rate_ppb) = 0;
@@ -113,6 +116,9 @@ class HardwareClock {
   virtual Task<void> step(Nanoseconds offset) = 0;
   // Rate correction against its oscillator, replacing the previous one.
   virtual Task<void> adjust_frequency(double ppb) = 0;
+  // The largest that adjust_frequency() takes, either way, as the driver states it
+  // (PTP_CLOCK_GETCAPS). Linux, igb_ptp.c: i350, i354, i210 and i211.
+  virtual double max_frequency_ppb() const { return 62'499'999; }
 };
 
 // An electrical pulse that interrupts the host; its stamps are late by the interrupt's latency.

@@ -414,7 +414,7 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
     setup.gathering_queue_frames = static_cast<std::uint32_t>(*frames);
   }
   if (const scenarios::Stream* scored = scenario.scored_stream()) {
-    setup.pulses_per_frame = scenario.pulses_per_frame(*scored);
+    setup.pulses_per_frame = scenario.pulses_per_passed_frame(*scored);
   }
   setup.make_gatherer = [chosen = choice.gathering](const GatheringSetup& gathering) {
     return chosen.make(gathering);

@@ -69,7 +69,8 @@ class RunWorld final : public WorldObserver {
   void on_message(const ObservedMessage&) override {}
 
   void on_frame(const ObservedFrame& frame) override {
-    if (frame.fate == FrameFate::kDelivered || frame.stream != stream_) return;
+    const bool is_lost = frame.fate != FrameFate::kDelivered && frame.fate != FrameFate::kNotPassed;
+    if (!is_lost || frame.stream != stream_) return;
     if (frame.camera >= kDetailCameras) return;
     lost_.push_back(
         {.camera = frame.camera,

@@ -70,6 +70,11 @@ long OsClockLimits::kernel_frequency(double ppb) const {
       ppb * 1e-3, -kMaxPpm - original * 1e6, kMaxPpm - original * 1e6, kMaxPpm, original * 1e6));
 }
 
+double OsClockLimits::max_frequency_ppb() const {
+  const long furthest = static_cast<long>(kMaxPpm * kUnitsPerPpm);
+  return std::min(rate_ppb(furthest), -rate_ppb(-furthest));
+}
+
 double OsClockLimits::rate_ppb(long kernel_frequency) const {
   const double original = fraction(original_frequency_);
   return (fraction(kernel_frequency) - original) / (1 + original) * 1e9;
@@ -172,6 +177,7 @@ class DryRunClock final : public SoftwareClock {
     frequency_ppb_ = ppb;
     co_await SoftwareClock::adjust_frequency(ppb);
   }
+  double max_frequency_ppb() const override { return limits_.max_frequency_ppb(); }
 
   Task<void> slew(Nanoseconds offset, double max_rate_ppb) override {
     double rate_ppb = 0;

@@ -76,6 +76,8 @@ class OsClockLimits {
   // The rate at which a clock that runs at `frequency_ppb` is slewed by `offset`: max_rate_ppb, or
   // what the kernel's limit leaves in that direction. Throws if that is nothing.
   double slew_rate_ppb(Nanoseconds offset, double max_rate_ppb, double frequency_ppb) const;
+  // The largest rate, either way, that kernel_frequency() surely takes.
+  double max_frequency_ppb() const;
   // The rate of a kernel frequency against the frequency that was found.
   double rate_ppb(long kernel_frequency) const;
 
@@ -116,6 +118,7 @@ class OsClock final : public NodeClock {
   Task<HostTime> now() override;
   Task<void> set(HostTime value) override;
   Task<void> adjust_frequency(double ppb) override;
+  double max_frequency_ppb() const override { return limits_.max_frequency_ppb(); }
   Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
 
   const NodeOscillator& oscillator() const override { return settings_.back().oscillator; }

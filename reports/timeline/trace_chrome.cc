@@ -73,6 +73,8 @@ class ChromeWriter {
       case TraceWhat::kHostStack:
       case TraceWhat::kLostInCamera:
       case TraceWhat::kLostOnUsb:
+      case TraceWhat::kLostInQueue:
+      case TraceWhat::kNotPassed:
         write_frame(event, trace_.frames[event.subject]);
         break;
       case TraceWhat::kSent:
@@ -93,11 +95,26 @@ class ChromeWriter {
     add(R"(,"cat":"{}","name":"{}","id":{}{})", kind, kind, event.arrow, binding);
   }
 
+  // Null: no loss.
+  static const char* loss_name(TraceWhat what) {
+    switch (what) {
+      case TraceWhat::kLostInCamera:
+        return "lost in camera";
+      case TraceWhat::kLostOnUsb:
+        return "lost on usb";
+      case TraceWhat::kLostInQueue:
+        return "lost in queue";
+      case TraceWhat::kNotPassed:
+        return "not passed on";
+      default:
+        return nullptr;
+    }
+  }
+
   void write_frame(const TraceEvent& event, const TraceFrame& frame) {
     const ObservedFrame& way = frame.way;
-    if (event.what == TraceWhat::kLostInCamera || event.what == TraceWhat::kLostOnUsb) {
-      add(R"(,"cat":"frame","name":"{}","args":{{"frame":{}}})",
-          event.what == TraceWhat::kLostOnUsb ? "lost on usb" : "lost in camera", way.counter);
+    if (const char* const loss = loss_name(event.what); loss != nullptr) {
+      add(R"(,"cat":"frame","name":"{}","args":{{"frame":{}}})", loss, way.counter);
       return;
     }
     add(R"(,"cat":"frame","name":"frame {}","args":{{"frame":{},"camera":{},"stream":"{}")",

@@ -302,9 +302,13 @@ class TimelineBuilder {
     if (way.fate == FrameFate::kLostInCamera) {
       tracks_.mark(frame_track(way, TrackKind::kExposure), TracePhase::kInstant,
                    TraceWhat::kLostInCamera, index, way.exposure_end);
-    } else {
+    } else if (way.fate == FrameFate::kLostOnUsb) {
       tracks_.mark(frame_track(way, TrackKind::kUsb), TracePhase::kInstant, TraceWhat::kLostOnUsb,
                    index, way.offered);
+    } else {
+      const bool is_lost = way.fate == FrameFate::kLostInQueue;
+      tracks_.mark(frame_track(way, TrackKind::kHostStack), TracePhase::kInstant,
+                   is_lost ? TraceWhat::kLostInQueue : TraceWhat::kNotPassed, index, way.delivered);
     }
   }
 

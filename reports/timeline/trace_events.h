@@ -48,6 +48,8 @@ enum class TraceWhat : std::uint8_t {
   kHostStack,     // frames
   kLostInCamera,  // frames
   kLostOnUsb,     // frames
+  kLostInQueue,   // frames
+  kNotPassed,     // frames
   kFrameArrow,
   kSet,          // sets
   kSent,         // messages

@@ -146,6 +146,8 @@ Task<void> NicClock::adjust_frequency(double ppb) {
   co_await wait_until(call.turn.end);
 }
 
+double NicClock::max_frequency_ppb() const { return nic_of(host_).max_adjustment_ppm * 1e3; }
+
 HardwareTime NicClock::stamp(TrueTime at, RandomStream& draw) const {
   const scenarios::Nic& nic = nic_of(host_);
   const HardwareTime exact(clock_.read(at).time_since_epoch());

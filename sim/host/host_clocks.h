@@ -124,7 +124,8 @@ class SteadyPort final : public SteadyClock {
 // the kernel does, on its ticks but not rounded to the interface's resolution. A cross stamp reads
 // the card later than the middle, by Exp(cross_stamp_exponential_us) that is not in the call's
 // duration, as on a bus that is not equally fast both ways; and rarely it is interrupted on either
-// side of that (cross_stamp_spike_*). Changes of rate must stay below 5e8 ppb.
+// side of that (cross_stamp_spike_*). Changes of rate must
+// stay within max_adjustment_ppm.
 //
 // Messages are stamped by their last bit at both ends: when it passes the sender's port, behind
 // what was queued there, and when it reaches the receiver, before anything wakes up.
@@ -138,6 +139,7 @@ class NicClock final : public HardwareClock {
   // As step(), to a reading.
   Task<void> set(HardwareTime value);
   Task<void> adjust_frequency(double ppb) override;
+  double max_frequency_ppb() const override;
 
   // The stamp of an event at `at`, with noise from `draw`.
   HardwareTime stamp(TrueTime at, RandomStream& draw) const;

@@ -38,9 +38,8 @@ int CardClock::refusal(const timex& request) const {
     return is_time && std::abs(request.time.tv_sec / 2) <= kMostCardSeconds / 2 ? 0 : EINVAL;
   }
   if ((request.modes & ADJ_FREQUENCY) != 0) {
-    return std::abs(static_cast<double>(request.freq) * kPpbPerUnit) <= shim::kMostCardRate
-               ? 0
-               : ERANGE;
+    const double ppb = std::abs(static_cast<double>(request.freq) * kPpbPerUnit);
+    return ppb <= std::round(host_.nic()->max_frequency_ppb()) ? 0 : ERANGE;
   }
   return request.modes == 0 ? 0 : EOPNOTSUPP;
 }

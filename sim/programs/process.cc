@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -158,7 +159,11 @@ shim::Identity Process::identity() const {
           .netmask = processes::kNetmask,
           .first_address = processes::kFirstAddress,
           .hosts = static_cast<std::uint32_t>(network_.hosts()),
-          .has_card_clock = host_.nic() != nullptr ? 1U : 0U};
+          .has_card_clock = host_.nic() != nullptr ? 1U : 0U,
+          .most_card_rate =
+              host_.nic() != nullptr
+                  ? static_cast<std::int32_t>(std::lround(host_.nic()->max_frequency_ppb()))
+                  : 0};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {

@@ -53,6 +53,9 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
   if (has_steered_sensors(scenario, steering)) {
     reference_.emplace(trigger_.due(0), from_ns(1e9 / scenario.trigger.pulse_rate_hz()));
   }
+  if (const auto& reader = scenario.hosts.frame_reader) {
+    readers_.assign(cameras_.streams().size(), ReaderQueue(*reader));
+  }
   camera_faults_.start(TrueTime{});
   make_hosts();
   plan_slot(TrueTime{});
@@ -120,6 +123,7 @@ void CameraWorld::make_period(CameraPeriod& period) {
     expose_by_timers(host, std::min(period.end, last_exposure_));
     transfer(host, period.end);
     for (const Step& step : transferred_) deliver(host, step);
+    if (!readers_.empty()) read(host, period.end);
   }
   made_until_ = std::min(period.end, last_exposure_);
   hand_out_frames(period.end, period.frames);
@@ -337,7 +341,27 @@ void CameraWorld::deliver(HostSide& host, const Step& transferred) {
   arrival +=
       host.load.delay(start_ + arrival.time_since_epoch(), kLateFrame, frame.stream, frame.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
-  ended_.push_back(step(stream.last_arrival, now, transferred.frame));
+  if (readers_.empty()) {
+    return ended_.push_back(step(stream.last_arrival, now, transferred.frame));
+  }
+  readers_[frame.stream].arrive(transferred.frame, stream.last_arrival, read_);
+  end_read_frames();
+}
+
+void CameraWorld::read(const HostSide& host, TrueTime before) {
+  for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
+    readers_[id].read_before(before, read_);
+  }
+  end_read_frames();
+}
+
+void CameraWorld::end_read_frames() {
+  for (const ReaderQueue::Outcome& outcome : read_) {
+    SimFrame& frame = frames_[outcome.frame].frame;
+    frame.fate = outcome.fate;
+    ended_.push_back(step(outcome.at, frame.transferred, outcome.frame));
+  }
+  read_.clear();
 }
 
 // Hands out the frames that were delivered or lost before that.

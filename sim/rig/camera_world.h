@@ -4,7 +4,8 @@
 // The way of a frame:
 //
 //   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
-//     -> transfer complete -> delivery to its host
+//     -> transfer complete -> delivery to its host -> the program takes it
+//     (sim/host/reader_queue.h)
 //
 // Problem: all pipelines of a scenario and a seed are to meet the same frames, and a rig of 18
 // cameras makes thousands of them a second of true time.
@@ -59,6 +60,7 @@
 #include "sim/engine/engine.h"
 #include "sim/engine/slots.h"
 #include "sim/faults/faults.h"
+#include "sim/host/reader_queue.h"
 #include "sim/network/load.h"
 #include "sim/rig/cameras.h"
 #include "sim/rig/clock_polls.h"
@@ -194,6 +196,9 @@ class CameraWorld {
   std::vector<Step>::iterator pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before);
   void offer(Bus& bus, const Step& offer);
   void deliver(HostSide& host, const Step& transferred);
+  // What the programs of a host take before that, of the streams that are read.
+  void read(const HostSide& host, TrueTime before);
+  void end_read_frames();
   void hand_out_frames(TrueTime before, std::vector<SimFrame>& frames);
 
   const scenarios::Scenario& scenario_;
@@ -212,8 +217,10 @@ class CameraWorld {
   std::vector<double> transfer_ns_of_kind_;  // by the number of the camera's stream
   std::vector<HostSide> hosts_;
   Slots<FrameInFlight> frames_;
-  std::vector<Step> transferred_;  // of one host
-  std::vector<Step> ended_;        // delivered or lost
+  std::vector<Step> transferred_;     // of one host
+  std::vector<Step> ended_;           // delivered or lost
+  std::vector<ReaderQueue> readers_;  // of each stream; none where programs are never busy
+  std::vector<ReaderQueue::Outcome> read_;
   TrueTime last_exposure_;
   ClockPolls polls_;
   TrueTime end_;

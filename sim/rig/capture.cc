@@ -10,8 +10,8 @@ namespace {
 constexpr std::size_t kAhead = 16;  // frames, for the cache
 
 // A camera's stamp by its host's steady clock, with the noise of its own stamps.
-DeviceStamp host_stamp(const SimFrame& frame, SteadyTime reading) {
-  const SteadyTime noisy = reading + from_ns_down(frame.stamp_noise_ns);
+DeviceStamp host_stamp(const SimFrame& frame, SteadyTime reading, Nanoseconds epoch) {
+  const SteadyTime noisy = reading + epoch + from_ns_down(frame.stamp_noise_ns);
   return {static_cast<std::uint32_t>(floor_div(noisy.time_since_epoch().count(), 1000))};
 }
 
@@ -225,13 +225,17 @@ void Capture::stamp(const SimFrame& frame, const FrameStamps& stamps) {
   const SystemClock::Reading exposed = clock.read_both(middle);
   const bool is_master = frame.host == 0;
   const bool on_host = stamps_on_host_;
+  const std::vector<double>& epochs_s = scenario_.cameras.stamp_epoch_of_camera_s;
+  const Nanoseconds epoch =
+      epochs_s.empty() ? Nanoseconds(0) : from_seconds(epochs_s[frame.camera]);
   records_.push_back(
       {.camera = frame.camera,
        .stream = frame.kind,
        .counter = frame.counter,
        .exposure_us = frame.exposure_us,
-       .sensor = on_host ? host_stamp(frame, exposed.steady) : stamps.sensor,
-       .frame = on_host ? host_stamp(frame, clock.steady(date(frame.readout_start))) : stamps.frame,
+       .sensor = on_host ? host_stamp(frame, exposed.steady, epoch) : stamps.sensor,
+       .frame = on_host ? host_stamp(frame, clock.steady(date(frame.readout_start)), epoch)
+                        : stamps.frame,
        .backend =
            backend_stamps_.stamp(clock, steady_starts_[frame.host], date(frame.copied), arrival),
        .arrival = round_down(arrival.system, arrival_quantum_),

@@ -17,7 +17,9 @@ TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras
     const auto cameras_before = static_cast<double>(camera % per_branch);
     RandomStream branch_stream(seed, "trigger/branch", branch);
     RandomStream cable_stream(seed, "trigger/cable", camera);
-    delays_.push_back(from_us(branch_stream.uniform(0, settings.branch_delay_max_us) +
+    const double own_us =
+        settings.delay_of_camera_us.empty() ? 0 : settings.delay_of_camera_us.at(camera);
+    delays_.push_back(from_us(own_us + branch_stream.uniform(0, settings.branch_delay_max_us) +
                               cable_stream.uniform(0, settings.cable_delay_max_us) +
                               cameras_before * settings.daisy_chain_delay_us));
   }

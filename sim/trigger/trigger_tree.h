@@ -5,6 +5,8 @@
 // first. Missed and paused pulses leave their slot empty, so that a slot number is the same for
 // every camera and for the ground truth.
 //
+// A camera may have a delay of its own (delay_of_camera_us).
+//
 // The cameras of a sub-trigger are a star, or a daisy chain in which each camera passes the pulse
 // on to the next one after daisy_chain_delay_us (Azure Kinect; one sub-trigger for all cameras then
 // stands for the master, whose oscillator the trigger's rate is).

@@ -142,11 +142,39 @@ TEST(Warnings, CamerasWithABusOfTheirOwnShareNoController) {
   EXPECT_THAT(
       warnings(load_scenario("18cam_6host_45fps", {{"/usb/cameras_per_controller", "6"}})),
       ElementsAre("--set /usb/cameras_per_controller=6: each camera has 350 MB/s of its own "
-                  "(/usb/sharing is \"dedicated\"), so /usb/cameras_per_controller changes "
-                  "nothing: \"fair\" and \"fifo\" share a controller"));
+                  "(/usb/sharing is \"dedicated\"), so /usb/cameras_per_controller (found 6, "
+                  "allowed 1, which is what that means) changes nothing: \"fair\" and \"fifo\" "
+                  "share a controller"));
+  // Also as many as there are anyway, and where the sharing is what was changed.
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps", {{"/usb/cameras_per_controller", "3"}})),
+              ElementsAre(HasSubstr("(found 3, allowed 1")));
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps_lan", {{"/usb/sharing", "dedicated"}})),
+              ElementsAre(AllOf(HasSubstr("--set /usb/sharing=dedicated: "),
+                                HasSubstr("/usb/cameras_per_controller (found 3, allowed 1"))));
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps", {{"/usb/cameras_per_controller", "1"}})),
+              IsEmpty());
+  const Scenario builtin = load_scenario("18cam_6host_45fps");
+  EXPECT_THAT(warnings(builtin), IsEmpty());
+  EXPECT_THAT(warnings(load_scenario_text(builtin.resolved_json(), "archived.json")), IsEmpty());
   EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps",
                                      {{"/hosts/count", "3"}, {"/cameras/cameras_per_host", "6"}})),
               ElementsAre(HasSubstr("so that 6 cameras are on a host changes nothing")));
+}
+
+TEST(Warnings, AReaderThatIsTooSlowOrDecimates) {
+  const auto with = [](const char* reader) {
+    return warnings(load_scenario("18cam_6host_45fps", {{"/hosts/frame_reader", reader}}));
+  };
+  EXPECT_THAT(with(R"({"frame_ms": 22, "queue_frames": 4, "full_queue": "drops_oldest"})"),
+              IsEmpty());
+  EXPECT_THAT(with(R"({"frame_ms": 40, "queue_frames": 4, "full_queue": "drops_oldest"})"),
+              ElementsAre(HasSubstr("the program is busy with a frame of depth for 40 ms and gets "
+                                    "one each 22.22 ms: 4 wait, then 44.4 % are lost; allowed at "
+                                    "most 22.22 ms, or fewer frames/s")));
+  EXPECT_THAT(
+      with(
+          R"({"frame_ms": 1, "queue_frames": 4, "full_queue": "drops_oldest", "passed_every": 2})"),
+      ElementsAre(HasSubstr("passes on one frame in 2 by its own count")));
 }
 
 TEST(Warnings, PulsesFasterThanTheMode) {
@@ -165,11 +193,6 @@ TEST(Warnings, PulsesFasterThanTheMode) {
               ElementsAre(HasSubstr("; cameras that start at different pulses expose at different "
                                     "ones")));
   EXPECT_THAT(at("90.9", {{"/cameras/sync_mode", "slave"}}), IsEmpty());
-  EXPECT_THAT(at("120", {{"/cameras/sync_mode", "slave"}}),
-              ElementsAre("--set /trigger/rate_hz=120: slave in a 90 Hz mode ignores pulses for a "
-                          "mode period less the guard of 0.02, and so follows at most 91.8367 Hz: "
-                          "of 120 Hz it answers one pulse in 2, 60 frames/s of depth; what a real "
-                          "one does beyond 90.9 Hz is not documented"));
   EXPECT_THAT(at("45", {{"/cameras/genlock_guard_fraction", "0"}}), IsEmpty());
   EXPECT_THAT(
       at("45", {{"/cameras/genlock_guard_fraction", "0"}, {"/trigger/rate_error_ppm", "1"}}),

@@ -1,6 +1,7 @@
 // What the schema and the checks refuse: exact messages.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,6 +11,8 @@
 
 namespace simbench::scenarios {
 namespace {
+
+using testing::HasSubstr;
 
 TEST(SchemaErrors, TypeRangeAndChoice) {
   EXPECT_EQ(error_of_text("[]"), "my.json:1: found an array of 0, allowed an object");
@@ -295,12 +298,31 @@ TEST(Checks, CameraModels) {
   EXPECT_EQ(error_of_set("/cameras/model", "d435"), "");
 }
 
+TEST(Checks, ListsOfCamerasHaveAValueForEach) {
+  EXPECT_EQ(
+      error_of_set("/trigger/delay_of_camera_us", "[1, 2]"),
+      "--set /trigger/delay_of_camera_us=[1, 2]: found 2 delays, allowed none or one for each "
+      "of the 18 cameras");
+  EXPECT_THAT(error_of_set("/cameras/stamp_epoch_of_camera_s", "[37]"),
+              HasSubstr("found 1 epochs, allowed none or one for each of the 18 cameras"));
+  EXPECT_THAT(
+      error_of_set("/cameras/stamp_epoch_of_camera_s", "[37,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0]"),
+      HasSubstr("allowed none where /cameras/stamp_clock is \"camera\""));
+}
+
 TEST(Checks, RatesOfTheSyncModes) {
   EXPECT_EQ(error_of_set("/trigger/rate_hz", "90"), "") << "half the rate, with a warning";
   EXPECT_EQ(error_of_set("/cameras/sync_mode", "slave"),
             place_in_base("/trigger/rate_hz") +
-                ": found 45 Hz, allowed at least 89.1 Hz in sync mode \"slave\" with a 90 Hz mode");
-  EXPECT_EQ(error_of(R"("trigger": {"rate_hz": 120}, "cameras": {"sync_mode": "slave"})"), "");
+                ": found 45 Hz, allowed 89.1 to 90.9 Hz in sync mode \"slave\" with a 90 Hz mode");
+  EXPECT_EQ(
+      error_of(R"("trigger": {"rate_hz": 120}, "cameras": {"sync_mode": "slave"})"),
+      "my.json:3: /trigger/rate_hz: found 120 Hz, allowed 89.1 to 90.9 Hz in sync mode "
+      "\"slave\" with a 90 Hz mode: what a slave does with faster pulses is not documented; no "
+      "mode of 848x480 is as fast, and genlock answers a part of any pulses");
+  EXPECT_THAT(error_of("\"trigger\": {\"rate_hz\": 60},\n" +
+                       streams({stream("depth", 848, 480, 30)}, "slave")),
+              HasSubstr("; a mode of 60 Hz would follow, and genlock"));
   EXPECT_EQ(error_of_set("/cameras/sync_mode", "default"),
             place_in_base("/trigger/rate_hz") +
                 ": found 45 Hz, allowed 89.1 to 90.9 Hz in sync mode \"default\" with a 90 Hz "

@@ -45,7 +45,8 @@ double ChronyReference::change_of_frequency(const ChronyEstimate& estimate) {
     gain = present / (present + estimate.skew * estimate.skew);
   }
   const double before = frequency_;
-  frequency_ = std::clamp(frequency_ + gain * estimate.frequency, -kMaxFrequency, kMaxFrequency);
+  const double most = settings_.max_frequency;
+  frequency_ = std::clamp(frequency_ + gain * estimate.frequency, -most, most);
   const double change = frequency_ - before;
   const double disagreement = std::hypot(std::sqrt(1 - gain) * gain * estimate.frequency,
                                          std::sqrt(gain) * (1 - gain) * estimate.frequency);
@@ -82,6 +83,13 @@ constexpr double kBurstShare = 0.25;   // of a poll interval
 constexpr double kBadSample = 0.1;
 constexpr double kMissedWhileSynchronised = 0.1;
 constexpr double kMissed = 0.25;
+
+ChronyReferenceSettings reference_settings(Host& host, const ChronySettings& settings) {
+  ChronyReferenceSettings reference = settings.reference;
+  reference.max_frequency =
+      std::min(reference.max_frequency, host.clock().max_frequency_ppb() / 1e9);
+  return reference;
+}
 
 // The client on one slave. The host must outlive the client, and the client its coroutines.
 class ChronyClient {
@@ -165,7 +173,7 @@ ChronyClient::ChronyClient(Host& host, PeerId server, const ChronySettings& sett
       settings_(settings),
       association_(host, server, stamps_of(settings.stamps)),
       stats_(settings.stats),
-      reference_(settings.reference),
+      reference_(reference_settings(host, settings)),
       poll_(settings.poll_min, settings.poll_max, settings.poll_target),
       start_(host.steady_clock().now()),
       heard_(start_),

@@ -19,9 +19,10 @@
 // is "synchronised" at the first correction of the clock, and a failure after eight polls without a
 // valid reply, or, where the kernel's stamps are asked for, when the host's stack takes none.
 //
-// Not here: several sources and their selection, the sample filter option, refclocks, a frequency
-// above 500 ppm (chronyd takes 10 %, through the kernel's tick), the slower rate of what a slew has
-// left after 10000 s. chrony has no broadcast client.
+// The frequency is within what the clock takes: 10 % on Linux, by the kernel's tick.
+//
+// Not here: several sources and their selection, the sample filter option, refclocks, the slower
+// rate of what a slew has left after 10000 s. chrony has no broadcast client.
 //
 // Source: docs/reference/host_sync.md sections 1 and 2 (chrony 4.3); chrony.conf documentation.
 //
@@ -102,7 +103,7 @@ class ChronyPoll {
 //
 // A pure state machine.
 // Source: docs/reference/host_sync.md section 2 (chrony, conf.c, reference.c); chrony.conf
-// documentation (corrtimeratio, maxslewrate, maxupdateskew, makestep).
+// documentation (corrtimeratio, maxslewrate, maxupdateskew, makestep); sys_linux.c (10 %).
 //
 //   ChronyReference reference({});
 //   const ChronyCorrection correction = reference.update(*stats.estimate(), now_s, left_s);
@@ -110,6 +111,7 @@ struct ChronyReferenceSettings {
   double correction_ratio = 3;  // corrtimeratio
   double max_slew_ppm = 83333.333;
   double max_update_skew_ppm = 1000;
+  double max_frequency = 0.1;  // as a fraction; the clock's
   double step_threshold_s = 1;
   int step_updates = 0;
 };
@@ -123,14 +125,13 @@ struct ChronyCorrection {
 
 class ChronyReference {
  public:
-  static constexpr double kMaxFrequency = 500e-6;
   static constexpr double kMinSkew = 1e-12;
 
   explicit ChronyReference(const ChronyReferenceSettings& settings) : settings_(settings) {}
 
   // Begins with a known frequency, as a drift file has it; both as fractions.
   void start_with(double frequency, double skew) {
-    frequency_ = std::clamp(frequency, -kMaxFrequency, kMaxFrequency);
+    frequency_ = std::clamp(frequency, -settings_.max_frequency, settings_.max_frequency);
     skew_ = std::max(skew, kMinSkew);
   }
 

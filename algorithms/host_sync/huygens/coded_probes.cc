@@ -29,7 +29,9 @@ std::optional<CodedProbes::Pair> CodedProbes::departed(std::uint32_t pair,
   if (!open.arrived_ns[0] || !open.arrived_ns[1]) return std::nullopt;
   const std::int64_t spread =
       (*open.arrived_ns[1] - *open.arrived_ns[0]) - (left_ns[1] - left_ns[0]);
+  ++count_.complete;
   if (std::abs(spread) > purity_ns_) return std::nullopt;
+  ++count_.pure;
   return Pair{ProbeWay{left_ns[0], *open.arrived_ns[0]}, ProbeWay{left_ns[1], *open.arrived_ns[1]}};
 }
 

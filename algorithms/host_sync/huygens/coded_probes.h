@@ -47,6 +47,13 @@ class CodedProbes {
   // The pair, if it is complete and pure. Each pair is given once.
   std::optional<Pair> departed(std::uint32_t pair, std::array<std::int64_t, 2> left_ns);
 
+  // Pairs until now of which all four stamps are known, and those of them that were pure.
+  struct Count {
+    std::size_t complete = 0;
+    std::size_t pure = 0;
+  };
+  Count count() const { return count_; }
+
  private:
   struct Open {
     std::uint32_t number = 0;
@@ -55,6 +62,7 @@ class CodedProbes {
 
   std::int64_t purity_ns_;
   std::deque<Open> open_;  // in order of number
+  Count count_;
 };
 
 // The line of one raw clock's lead over another: at x of clock a, clock b reads x + lead_ns(x).

@@ -52,6 +52,16 @@ class HuygensHost {
     return tasks;
   }
 
+  // The pairs of probes of all peers.
+  CodedProbes::Count pairs() const {
+    CodedProbes::Count all;
+    for (const auto& [peer, link] : links_) {
+      all.complete += link.count().complete;
+      all.pure += link.count().pure;
+    }
+    return all;
+  }
+
   // Takes what comes from the peer, for ever.
   Task<void> listen(PeerId peer) {
     MessageChannel& channel = host_.open_channel(peer, Transport::kDatagram);
@@ -293,8 +303,17 @@ class HuygensSlave : public HuygensHost {
       return outcome_.failed(0, lacking);
     }
     if (host().steady_clock().now() - begin_ < kHuygensPatience) return;
-    outcome_.failed(0, "no line from host " + std::to_string(master_) +
-                           "; is it running and reachable, and do the hosts stamp their messages?");
+    const std::string no_line = "no line from host " + std::to_string(master_);
+    const CodedProbes::Count pairs = this->pairs();
+    if (pairs.complete == 0) {
+      return outcome_.failed(
+          0, no_line + "; is it running and reachable, and do the hosts stamp their messages?");
+    }
+    outcome_.failed(
+        0, no_line + ": " + std::to_string(pairs.pure) + " of " + std::to_string(pairs.complete) +
+               " pairs of probes came as far apart as they had left (purity_us); queues "
+               "or late stamps parted the others. Take the load off the network, use the "
+               "cards' stamps, allow a larger purity_us, or take another host_sync");
   }
 
   Task<void> report_failure() {

@@ -23,8 +23,10 @@
 //
 // A service. The cost: 2 (hosts - 1) hosts / probe_interval probes, and some messages per window
 // for each pair. Lost, repeated and foreign messages cost their pair or window only. A slave
-// reports its outcome when it first steers, after 30 s without that, or when it lacks the
-// stamps. Source: Geng et al., Exploiting a Natural Network Effect for Scalable, Fine-grained Clock
+// reports its outcome when it first steers, after 30 s without that (with the share of pure pairs:
+// where ports are busy for nine tenths of the time, hardly any is), or when it lacks the stamps.
+//
+// Source: Geng et al., Exploiting a Natural Network Effect for Scalable, Fine-grained Clock
 // Synchronization, NSDI 2018; docs/reference/host_sync.md section 1 (Huygens).
 //
 //   Huygens sync({.stamps = StampSource::kCard, .purity = from_us(0.2)});

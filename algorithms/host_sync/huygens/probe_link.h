@@ -28,6 +28,7 @@ class ProbeLink {
   Task<void> probe();
   // A probe that has arrived. On b: the hull of a window that this one ends.
   std::optional<BoundsMessage> take(const ProbeMessage& probe, std::int64_t arrived_ns);
+  CodedProbes::Count count() const { return probes_.count(); }
   // On a: the line of the window that b's hull is of.
   std::optional<PairLine> take(const BoundsMessage& bounds);
 

@@ -1,5 +1,7 @@
 #include "algorithms/host_sync/huygens/raw_clock.h"
 
+#include <algorithm>
+
 #include "algorithms/host_sync/cross_stamps.h"
 
 namespace simbench {
@@ -25,8 +27,11 @@ Task<std::optional<std::int64_t>> RawClock::departure(MessageChannel& channel, M
   if (!stamp || is_card()) co_return stamp;
   const SteadyTime left = system_.when(HostTime(Nanoseconds(*stamp)));
   const SteadyTime now = host_.steady_clock().now();
-  if (left < begin || left > now) co_return std::nullopt;
-  co_return nanoseconds_of(left);
+  // It left between the two; beyond that is what the system clock's reading is uncertain by, and
+  // where a call takes no time at all, half of the readings are. More than that was a step.
+  const Nanoseconds uncertain = system_.uncertainty();
+  if (left < begin - uncertain || left > now + uncertain) co_return std::nullopt;
+  co_return nanoseconds_of(std::clamp(left, begin, now));
 }
 
 std::optional<std::int64_t> RawClock::arrival(const ReceivedMessage& message) {

@@ -38,8 +38,9 @@ class RawClock {
   // Keeps the card's clock in view, for ever; returns at once if that is not the raw clock.
   Task<void> watch();
 
-  // When the message left that send(), called at `begin`, has just returned from. Nothing if it was
-  // not stamped, or if the system clock was stepped meanwhile.
+  // When the message left that send(), called at `begin`, has just returned from: never outside of
+  // the call, however coarse or uncertain the stamp is. Nothing if it was not stamped, or if the
+  // system clock was stepped meanwhile.
   Task<std::optional<std::int64_t>> departure(MessageChannel& channel, MessageId id,
                                               SteadyTime begin);
   std::optional<std::int64_t> arrival(const ReceivedMessage& message);

@@ -71,7 +71,8 @@ void PtpSettings::bind(ParameterBinder& parameters) {
   servo_limits.bind_first_step(parameters, kLinuxPtp);
   parameters.scaled("step_threshold_us", servo_limits.step_threshold_ns, 1e3, 0, 1e12,
                     "later ones are steps above this; 0: never", kLinuxPtp);
-  servo_limits.bind_max_frequency(parameters);
+  servo_limits.bind_max_frequency(parameters,
+                                  "linuxptp: max_frequency; clockadj_max_freq(), phc_max_adj()");
   bind_software_stamps(parameters, stamps);
 }
 

@@ -48,7 +48,7 @@ struct PtpSettings {
   std::size_t median_length = 10;
   ServoKind servo = ServoKind::kPi;
   // The port's servo and phc2sys have these limits, each with an interval of its own.
-  ServoSettings servo_limits{.max_frequency_ppb = 500e3};
+  ServoSettings servo_limits{};
   Nanoseconds patience = from_ms(30e3);  // beyond what the servo needs for its first frequency
 
   void bind(ParameterBinder& parameters);

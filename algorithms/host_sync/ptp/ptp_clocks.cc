@@ -1,5 +1,6 @@
 #include "algorithms/host_sync/ptp/ptp_clocks.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "algorithms/host_sync/cross_stamps.h"
@@ -32,12 +33,22 @@ Task<void> step_system_clock(Host& host, Nanoseconds offset) {
   }
 }
 
-ServoSettings at_coupling_interval(ServoSettings settings) {
+ServoSettings coupling_settings(Host& host, ClockKind follower, ServoSettings settings) {
+  settings = limited_by(host, follower, settings);
   settings.interval_s = to_seconds(ClockCoupling::kInterval);
   return settings;
 }
 
 }  // namespace
+
+ServoSettings limited_by(Host& host, ClockKind clock, ServoSettings settings) {
+  const HardwareClock* const card = host.hardware_clock();
+  if (clock == ClockKind::kHardware && card == nullptr) return settings;
+  const double most_ppb =
+      clock == ClockKind::kHardware ? card->max_frequency_ppb() : host.clock().max_frequency_ppb();
+  settings.max_frequency_ppb = std::min(settings.max_frequency_ppb, most_ppb);
+  return settings;
+}
 
 Task<void> set_frequency(Host& host, ClockKind clock, double ppb) {
   if (clock == ClockKind::kSystem) {
@@ -64,7 +75,7 @@ Task<void> apply_answer(Host& host, ClockKind clock, ServoAnswer answer, Nanosec
 ClockCoupling::ClockCoupling(Host& host, ClockKind follower, ServoSettings settings)
     : host_(host),
       follower_(follower),
-      servo_(PiServo::kHardwareStamps, at_coupling_interval(settings)) {}
+      servo_(PiServo::kHardwareStamps, coupling_settings(host, follower, settings)) {}
 
 Task<void> ClockCoupling::update() {
   const CrossStamp best = co_await narrowest_cross_stamp(host_);

@@ -26,6 +26,9 @@ inline ClockKind clock_of(StampSource stamps) {
   return stamps == StampSource::kCard ? ClockKind::kHardware : ClockKind::kSystem;
 }
 
+// The settings, with a largest frequency that the clock takes.
+ServoSettings limited_by(Host& host, ClockKind clock, ServoSettings settings);
+
 // Does to the clock what the servo answered, which had been fed `offset`. A set call of the system
 // clock takes effect late by a part of its duration, so a step is measured against the steady clock
 // and its rest set again.

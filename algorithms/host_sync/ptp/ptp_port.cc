@@ -26,6 +26,12 @@ std::unique_ptr<Servo> make_port_servo(const PtpSettings& settings) {
   return std::make_unique<LinearRegressionServo>(port_servo_settings(settings));
 }
 
+// What the clock that stamps takes.
+PtpSettings with_limits_of(Host& host, PtpSettings settings) {
+  settings.servo_limits = limited_by(host, clock_of(settings.stamps), settings.servo_limits);
+  return settings;
+}
+
 // Until there is a first offset and a frequency: some Syncs, and what the PI servo waits.
 Nanoseconds start_up_time(const PtpSettings& settings) {
   const double servo_s =
@@ -112,7 +118,7 @@ PtpSlave::PtpSlave(Host& host, PeerId master, PtpSettings settings)
     : host_(host),
       master_(master),
       settings_(settings),
-      servo_(make_port_servo(settings)),
+      servo_(make_port_servo(with_limits_of(host, settings))),
       stamps_(host, settings.stamps),
       offset_(settings.median_length),
       outcome_(host) {

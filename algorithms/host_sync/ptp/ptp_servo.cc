@@ -199,9 +199,11 @@ void ServoSettings::bind_first_step(ParameterBinder& parameters, const char* sou
                     "the first correction is a step above this; 0: never", source);
 }
 
-void ServoSettings::bind_max_frequency(ParameterBinder& parameters) {
-  parameters.scaled("max_frequency_ppm", max_frequency_ppb, 1e3, 1, 4e5,
-                    "largest correction of a frequency", "adjtimex(2)");
+void ServoSettings::bind_max_frequency(ParameterBinder& parameters, const char* source) {
+  parameters.scaled("max_frequency_ppm", max_frequency_ppb, 1e3, 1, 9e5,
+                    "largest correction of a frequency, and no more than the clock takes: the "
+                    "system clock 10 %, a card what its driver states",
+                    source);
 }
 
 }  // namespace simbench

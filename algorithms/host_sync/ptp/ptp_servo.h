@@ -48,12 +48,12 @@ struct ServoAnswer {
 
 struct ServoSettings {
   double interval_s = 1;
-  double max_frequency_ppb = 9e8;
+  double max_frequency_ppb = 9e8;           // and no more than the clock takes (ptp_clocks.h)
   double first_step_threshold_ns = 20'000;  // 0: never
   double step_threshold_ns = 0;             // 0: never
 
   void bind_first_step(ParameterBinder& parameters, const char* source);
-  void bind_max_frequency(ParameterBinder& parameters);
+  void bind_max_frequency(ParameterBinder& parameters, const char* source);
 };
 
 class Servo {

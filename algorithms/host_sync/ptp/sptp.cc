@@ -55,7 +55,7 @@ class SptpClient {
         clock_(clock_of(settings.stamps)),
         stamps_(host, settings.stamps),
         path_delay_(settings.path_delay),
-        servo_(servo_settings(settings)),
+        servo_(servo_settings(host, settings)),
         begin_(host.steady_clock().now()),
         outcome_(host) {
     if (clock_ == ClockKind::kHardware && host.hardware_clock() != nullptr) {
@@ -87,8 +87,8 @@ class SptpClient {
   }
 
  private:
-  static ServoSettings servo_settings(const SptpSettings& settings) {
-    ServoSettings servo = settings.servo_limits;
+  static ServoSettings servo_settings(Host& host, const SptpSettings& settings) {
+    ServoSettings servo = limited_by(host, clock_of(settings.stamps), settings.servo_limits);
     servo.interval_s = to_seconds(settings.interval);
     return servo;
   }
@@ -227,20 +227,25 @@ void SptpSettings::bind(ParameterBinder& parameters) {
   parameters.number("discard_multiplier", path_delay.multiplier, 2, 1e6, "of the path delay",
                     example);
   servo_limits.bind_first_step(parameters, "facebook/time, servo/servo.go; its example has 1 s");
-  servo_limits.bind_max_frequency(parameters);
+  servo_limits.bind_max_frequency(
+      parameters, stamps == StampSource::kCard
+                      ? "facebook/time, phc: MaxFreqAdjPPB, the driver's max_adj"
+                      : "facebook/time, clock: MaxFreqPPB, the kernel's tolerance of 500 ppm");
   bind_software_stamps(parameters, stamps);
 }
 
 namespace {
 
 HostSyncEntry sptp(std::string name, std::string summary, StampSource stamps) {
+  SptpSettings settings{.stamps = stamps};
+  if (stamps == StampSource::kCard) settings.servo_limits = {};
   return with_settings<HostSyncEntry>(
       {.name = std::move(name),
        .family = "sptp",
        .summary = std::move(summary),
        .source = "facebook/time, ptp/sptp (docs/reference/host_sync.md section 1)",
        .needs = needs_of(stamps)},
-      SptpSettings{.stamps = stamps}, kMake<Sptp>);
+      settings, kMake<Sptp>);
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ struct SptpSettings {
   Nanoseconds exchange_timeout = from_ms(100);  // at most half of the interval
   SptpPathDelay::Settings path_delay{};
   // The client's servo and phc2sys have these limits, each with an interval of its own.
+  // It takes the kernel's tolerance for the system clock's (500 ppm, without the tick), and the
+  // driver's limit for the card's.
   ServoSettings servo_limits{.max_frequency_ppb = 500e3};
   Nanoseconds patience = from_ms(30e3);
 

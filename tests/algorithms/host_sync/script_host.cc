@@ -117,7 +117,7 @@ class ScriptHost::SystemClock : public HostClock {
         begin + Nanoseconds(static_cast<std::int64_t>(static_cast<double>(cost.count()) *
                                                       host_.costs.set_fraction));
     co_await host_.world_.wait_until(effective);
-    const Nanoseconds step = value - host_.reading();
+    const Nanoseconds step = value - HostTime(host_.world_.now() + host_.offset);
     host_.offset += step;
     host_.steps.push_back(step);
     co_await host_.world_.wait_until(begin + cost);
@@ -127,6 +127,8 @@ class ScriptHost::SystemClock : public HostClock {
     host_.frequencies_ppb.push_back(ppb);
     co_return;
   }
+
+  double max_frequency_ppb() const override { return host_.max_frequency_ppb; }
 
   Task<void> slew(Nanoseconds amount, double max_rate_ppb) override {
     host_.slews.push_back({amount, max_rate_ppb});
@@ -207,7 +209,10 @@ ScriptHost::ScriptHost(ScriptWorld& world, PeerId id)
 
 ScriptHost::~ScriptHost() = default;
 
-HostTime ScriptHost::reading() const { return HostTime(world_.now() + offset); }
+HostTime ScriptHost::reading() const {
+  const Nanoseconds exact = world_.now() + offset;
+  return HostTime(granularity * floor_div(exact.count(), granularity.count()));
+}
 
 void ScriptHost::deliver(PeerId from, Bytes bytes) { channel(from).deliver(std::move(bytes)); }
 
@@ -224,7 +229,7 @@ Task<void> ScriptHost::sleep_for(Nanoseconds interval) {
 }
 
 Task<void> ScriptHost::sleep_until(HostTime at) {
-  co_await world_.wait_until(world_.now() + (at - reading()));
+  co_await world_.wait_until(at.time_since_epoch() - offset);
 }
 
 void ScriptHost::report_outcome(const SyncOutcome& outcome) {

@@ -90,7 +90,9 @@ class ScriptHost : public Host {
 
   // Script.
   ScriptCosts costs;
-  Nanoseconds offset{0};           // system clock minus time
+  Nanoseconds offset{0};       // system clock minus time
+  Nanoseconds granularity{1};  // to which the system clock's readings are rounded down
+  double max_frequency_ppb = 100e6;
   double uniform = 0;              // what random_uniform() returns
   bool stamps_departures = false;  // in the kernel
   bool throw_on_outcome = false;   // a fault of the host itself

@@ -152,6 +152,10 @@ TEST_F(OsClockTest, RefusesARateBeyondTheKernels) {
               HasSubstr("found a rate of"));
   EXPECT_EQ(error_of(clock->adjust_frequency(-450'000)), "");
   EXPECT_NEAR(kernel_ppm(), -350, 0.1);
+  // What it says beforehand is taken in either direction.
+  EXPECT_NEAR(clock->max_frequency_ppb(), 400'000, 100);
+  EXPECT_EQ(error_of(clock->adjust_frequency(clock->max_frequency_ppb())), "");
+  EXPECT_EQ(error_of(clock->adjust_frequency(-clock->max_frequency_ppb())), "");
 }
 
 TEST_F(OsClockTest, ASlewIsAFrequencyThatEndsByItself) {

@@ -128,6 +128,62 @@ TEST(CaptureCameras, TheDeviceClockWrapsDuringACapture) {
   EXPECT_EQ(wraps, 1);
 }
 
+// 37 s of TAI less UTC, and a clock that began an hour later than the host's.
+TEST(CaptureCameras, StampsOfTheHostsClockMayCountFromAnotherEpoch) {
+  scenarios::Scenario s = ideal_scenario();
+  s.cameras.stamp_clock = scenarios::ClockOwner::kHost;
+  const CapturedFrames same = capture(s);
+  s.cameras.stamp_epoch_of_camera_s = {37, -3600};
+  const CapturedFrames other = capture(s);
+  ASSERT_EQ(other.frames.size(), same.frames.size());
+  for (std::size_t i = 0; i < same.frames.size(); ++i) {
+    const FrameRecord& before = same.frames[i].record;
+    const FrameRecord& after = other.frames[i].record;
+    const auto epoch_us =
+        static_cast<std::uint32_t>(before.camera == 0 ? 37'000'000LL : -3'600'000'000LL);
+    EXPECT_EQ(after.sensor.us - before.sensor.us, epoch_us);
+    EXPECT_EQ(after.frame.us - before.frame.us, epoch_us);
+    EXPECT_EQ(after.arrival, before.arrival);
+  }
+}
+
+// Frames of 45 Hz come every 22.2 ms, and each takes the program 40 ms.
+TEST(CaptureCameras, AReaderThatIsTooSlowLetsFramesWaitAndThenDrop) {
+  scenarios::Scenario s = ideal_scenario();
+  s.timeline.frames = 450;
+  const auto all = capture(s).of(0);
+  s.hosts.frame_reader = scenarios::FrameReader{
+      .frame_ms = 40, .queue_frames = 4, .full_queue = scenarios::FullQueue::kDropsNewest};
+  const auto taken = capture(s).of(0);
+  EXPECT_NEAR(static_cast<double>(taken.size()), static_cast<double>(all.size()) * (1e3 / 45) / 40,
+              6);
+  for (std::size_t i = 100; i < taken.size() - 8; ++i) {
+    EXPECT_EQ(taken[i].record.arrival - taken[i - 1].record.arrival, from_ms(40));
+    // Let in up to a period after a frame was taken, it waits for the rest of that and for three.
+    const Nanoseconds exposed_ago = taken[i].record.arrival - taken[i].truth.own_host;
+    EXPECT_GT(exposed_ago, from_ms(12 + 4 * 40 - 1e3 / 45) - Nanoseconds(2));
+    EXPECT_LE(exposed_ago, from_ms(12 + 4 * 40) + Nanoseconds(2));
+  }
+}
+
+TEST(CaptureCameras, APublisherPassesOnOneFrameInSoMany) {
+  scenarios::Scenario s = ideal_scenario();
+  s.hosts.frame_reader = scenarios::FrameReader{.frame_ms = 0,
+                                                .queue_frames = 1,
+                                                .full_queue = scenarios::FullQueue::kDropsOldest,
+                                                .passed_every = 3};
+  const CapturedFrames passed = capture(s);
+  for (const std::uint32_t camera : {0U, 1U}) {
+    std::uint32_t expected = 0;
+    for (const auto& frame : nonempty(passed.of(camera))) {
+      EXPECT_EQ(frame.record.counter, expected);
+      expected += 3;
+    }
+  }
+  EXPECT_EQ(s.pulses_per_passed_frame(s.cameras.streams[0]), 3);
+  EXPECT_EQ(s.pulses_per_frame(s.cameras.streams[0]), 1);
+}
+
 TEST(CaptureCameras, TheModelSaysWhichStreamsFollowASlavesTrigger) {
   scenarios::Scenario s = ideal_scenario();
   s.trigger.rate_hz = 30;

@@ -144,6 +144,62 @@ TEST(ClockSimulation, PartsOfANanosecondAreKept) {
   }
 }
 
+std::unique_ptr<HostSync> algorithm(const std::string& name) {
+  return find_algorithm<HostSyncEntry>(name)->make({});
+}
+
+// How long after the master's clock has jumped by 50 ms all slaves are within 1 ms of it.
+double recovery_s(const std::string& name, const scenarios::Scenario& world) {
+  constexpr double kStepS = 300;
+  scenarios::Scenario scenario = world;
+  scenario.faults.emplace_back(
+      scenarios::ClockStep{.host = 0, .at_ms = kStepS * 1e3, .step_ms = 50});
+  const auto sync = algorithm(name);
+  const Kept kept = read_clocks(scenario, {.pipeline = name,
+                                           .host_sync = sync.get(),
+                                           .duration = seconds(600),
+                                           .interval = seconds(1)});
+  double last_s = kStepS;
+  for (const auto& reading : kept.clocks.readings) {
+    if (reading.at_s < kStepS) continue;
+    for (const double error_s : reading.errors_s) {
+      if (std::abs(error_s) > 1e-3) last_s = reading.at_s;
+    }
+  }
+  return last_s - kStepS;
+}
+
+scenarios::Scenario with_cards(double max_adjustment_ppm) {
+  scenarios::Scenario scenario = three_hosts();
+  scenario.hosts.nic = {.hardware_stamps = true,
+                        .skew_sigma_ppm = 0,
+                        .stamp_resolution_ns = 1,
+                        .stamp_jitter_sigma_ns = 0,
+                        .max_adjustment_ppm = max_adjustment_ppm,
+                        .cross_stamp_cost_ms = 0.004};
+  return scenario;
+}
+
+// Debian's ptp4l and phc2sys take 15 s. With 500 ppm, as adjtimex(2) has it without the tick, 50 ms
+// take 100 s at least.
+TEST(ClockSimulation, AfterAStepOfTheMasterClocksAreSteeredAsFarAsTheyGo) {
+  EXPECT_LT(recovery_s("ptp_e2e_hardware", with_cards(62'499.999)), 25);
+  EXPECT_GT(recovery_s("ptp_e2e_hardware", with_cards(500)), 100);
+  EXPECT_LT(recovery_s("sptp_hardware", with_cards(62'499.999)), 60);
+}
+
+// Where calls cost nothing, a probe leaves in the very instant of its call.
+TEST(ClockSimulation, HuygensNeedsNoCallThatCosts) {
+  const scenarios::Scenario star = scenarios::load_scenario("6host_star");
+  ASSERT_EQ(star.hosts.send_cost_ms, 0);
+  const auto sync = algorithm("huygens_software");
+  const Kept kept = read_clocks(star, {.pipeline = "huygens_software",
+                                       .host_sync = sync.get(),
+                                       .duration = seconds(90),
+                                       .interval = seconds(10)});
+  for (const double error_s : nonempty(kept.clocks.at(90))) EXPECT_LT(std::abs(error_s), 0.2e-3);
+}
+
 TEST(ClockSimulation, ClocksAreReadUpToTheEnd) {
   const auto ends = [](const ClockRequest& request) {
     const Kept kept = read_clocks(three_hosts(), request);

@@ -34,6 +34,17 @@ TEST(TriggerTree, RateErrorShortensThePeriod) {
   EXPECT_EQ(tree.due(30015), TrueTime(std::chrono::seconds(1000)));
 }
 
+TEST(TriggerTree, ACameraMayHaveADelayOfItsOwn) {
+  scenarios::Trigger settings = ideal(30);
+  settings.cable_delay_max_us = 3;
+  const TriggerTree before(settings, 3, 1);
+  settings.delay_of_camera_us = {0, 1500, 20.5};
+  const TriggerTree after(settings, 3, 1);
+  EXPECT_EQ(after.delay_to(0), before.delay_to(0));
+  EXPECT_EQ(after.delay_to(1) - before.delay_to(1), from_us(1500));
+  EXPECT_EQ(after.delay_to(2) - before.delay_to(2), from_us(20.5));
+}
+
 TEST(TriggerTree, StartsLate) {
   scenarios::Trigger settings = ideal(10);
   settings.start_delay_ms = 250;

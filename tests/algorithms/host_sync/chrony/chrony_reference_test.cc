@@ -73,9 +73,12 @@ TEST(ChronyReference, OnlyTheFirstUpdatesMayStep) {
 
 TEST(ChronyReference, TheFrequencyIsCapped) {
   ChronyReference reference({});
-  EXPECT_EQ(reference.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency,
-            ChronyReference::kMaxFrequency);
-  EXPECT_EQ(reference.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency, 0);
+  EXPECT_NEAR(reference.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency, 5e-3, 1e-8);
+  ChronyReference beyond_the_tick({});
+  EXPECT_EQ(beyond_the_tick.update(estimate(0, 0.5, 1e-6), 0, 0).frequency, 0.1);
+  ChronyReference of_a_frequency_alone({.max_frequency = 500e-6});
+  EXPECT_EQ(of_a_frequency_alone.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency, 500e-6);
+  EXPECT_EQ(of_a_frequency_alone.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency, 0);
 }
 
 TEST(UnfinishedSlew, EndsWhenAllIsAdded) {

@@ -115,6 +115,33 @@ TEST_F(HuygensTest, WithoutTheMasterEachSlaveReportsIt) {
   }
 }
 
+// Each probe leaves in the instant of its call, where the reading of the system clock is wrong by
+// as much as it is coarse: no departure is outside of its call, and none is lost for that.
+TEST_F(HuygensTest, CallsThatTakeNoTimeLoseNoDeparture) {
+  for (PeerId host = 0; host < kHosts; ++host) world_.host(host).granularity = Nanoseconds(1'000);
+  run();
+  expect_aligned(world_, {.error_us = 1});
+  for (const PeerId slave : nonempty(world_.slaves())) {
+    EXPECT_TRUE(world_.host(slave).outcomes.at(0).synchronised);
+  }
+}
+
+TEST_F(HuygensTest, WhereNoPairIsPureTheOutcomeSaysSo) {
+  for (PeerId a = 0; a < kHosts; ++a) {
+    for (PeerId b = 0; b < kHosts; ++b) {
+      if (a == b) continue;
+      world_.script_link(a, b, [](std::size_t index, const Bytes&) {
+        return std::vector{kHuygensLatency + from_us(20.0 * static_cast<double>(index % 7))};
+      });
+    }
+  }
+  run(from_ms(60e3));
+  for (const PeerId slave : nonempty(world_.slaves())) {
+    expect_refused(world_, slave, "no line from host 0: 0 of ");
+    expect_refused(world_, slave, "Take the load off the network, use the cards' stamps");
+  }
+}
+
 TEST_F(HuygensTest, StampsThatTheHostDoesNotTakeAreAnOutcomeThatNamesThem) {
   settings_.stamps = StampSource::kCard;
   run(from_ms(60e3));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "algorithms/host_sync/ptp/ptp_port.h"
@@ -72,6 +74,32 @@ TEST_P(PtpTest, TheRateOfTheMessagesIsTheSettings) {
   EXPECT_NEAR(static_cast<double>(from_master), 60 * 16 * (GetParam() ? 4 : 3), 8);
   EXPECT_NEAR(static_cast<double>(from_slave), 60 * 16, 4);
   expect_aligned(world);
+}
+
+// The largest correction of a slave's clock after its master's has jumped by 0.5 s: kp of 0.1 asks
+// for 50 000 ppm and more.
+double largest_correction_ppm(double max_frequency_ppb, const PtpSettings& settings) {
+  ScriptWorld world(2);
+  world.connect(kPtpLatency);
+  world.host(0).stamps_departures = world.host(1).stamps_departures = true;
+  world.host(1).max_frequency_ppb = max_frequency_ppb;
+  world.host(1).uniform = 0.5;
+  world.call_at(from_ms(60e3), [&world] { world.host(0).offset += from_ms(500); });
+  Ptp sync(settings);
+  world.run(sync, from_ms(70e3));
+  double largest = 0;
+  for (const double ppb : nonempty(world.host(1).frequencies_ppb)) {
+    largest = std::max(largest, std::abs(ppb) / 1e3);
+  }
+  return largest;
+}
+
+TEST(PtpLimits, AClockIsSteeredAsFarAsItGoes) {
+  EXPECT_GT(largest_correction_ppm(100e6, {}), 50e3);
+  EXPECT_LE(largest_correction_ppm(100e6, {}), 100e3);
+  EXPECT_DOUBLE_EQ(largest_correction_ppm(400e3, {}), 400);
+  EXPECT_DOUBLE_EQ(largest_correction_ppm(100e6, {.servo_limits = {.max_frequency_ppb = 7e5}}),
+                   700);
 }
 
 INSTANTIATE_TEST_SUITE_P(EndToEndAndPeerDelay, PtpTest, testing::Bool());
