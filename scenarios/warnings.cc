@@ -118,6 +118,37 @@ void warn_about_dedicated_usb(Lines& lines, const Scenario& scenario) {
                    scenario.usb.bandwidth_mb_per_s, what));
 }
 
+// What paced and random traffic asks of each host's own port and of the port to it. TCP takes what
+// is left.
+void warn_about_traffic(Lines& lines, const Scenario& scenario) {
+  const Network& network = scenario.network;
+  const auto hosts = static_cast<std::size_t>(scenario.hosts.count);
+  std::vector<double> sent(hosts);
+  std::vector<double> received(hosts);
+  for (const Traffic& traffic : network.traffic) {
+    const double mbit_per_s = traffic.mbit_per_s.value_or(0);
+    const auto from = static_cast<std::size_t>(traffic.from);
+    const auto to = static_cast<std::size_t>(traffic.to);
+    sent[from] += mbit_per_s;
+    received[to] += mbit_per_s;
+    if (!traffic.both_ways) continue;
+    sent[to] += mbit_per_s;
+    received[from] += mbit_per_s;
+  }
+  const auto warn_of_port = [&](double asked, const std::string& port) {
+    const double carried = network.bandwidth_mbit_per_s;
+    if (asked <= carried) return;
+    warn(lines, "/network/traffic",
+         fmt::format("{:g} Mbit/s are sent {}, which carries {:g}: {:.1f} % of them are lost, and "
+                     "of the messages beside them",
+                     asked, port, carried, 100 * (1 - carried / asked)));
+  };
+  for (std::size_t host = 0; host < hosts; ++host) {
+    warn_of_port(sent[host], fmt::format("through host {}'s own port", host));
+    warn_of_port(received[host], fmt::format("through the switch's port to host {}", host));
+  }
+}
+
 void warn_about_usb(Lines& lines, const Scenario& scenario) {
   const Usb& usb = scenario.usb;
   if (usb.sharing == UsbSharing::kDedicated) {
@@ -380,6 +411,7 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
 Lines all_warnings(const Scenario& scenario) {
   Lines lines;
   warn_about_usb(lines, scenario);
+  warn_about_traffic(lines, scenario);
   warn_about_reader(lines, scenario);
   warn_about_pulses(lines, scenario);
   warn_about_exposure(lines, scenario);

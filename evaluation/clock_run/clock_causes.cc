@@ -38,6 +38,12 @@ class Causes {
                                             ? std::vector<Override>{{"/hosts/temperature", "null"}}
                                             : std::vector<Override>{});
     add("paths that are unequal there and back", asymmetries());
+    add("the traffic between hosts", scenario_.network.traffic.empty()
+                                         ? std::vector<Override>{}
+                                         : std::vector<Override>{{"/network/traffic", "[]"}});
+    add("the load of the processors", scenario_.hosts.cpu_load
+                                          ? std::vector<Override>{{"/hosts/cpu_load", "null"}}
+                                          : std::vector<Override>{});
     add("queues and bursts of the network",
         zeros({"/network/latency_exponential_ms", "/network/latency_session_exponential_ms",
                "/network/spike_probability", "/network/burst/rate_hz",

@@ -9,13 +9,14 @@
 // Why it fails: a clock that was stepped once moves by 140 s, and no noise did that.
 //
 // Key idea: take away what happened. The causes are steps of a clock and leap seconds, hosts and
-// links that stopped, the temperature of the hosts, unequal paths, queues and bursts, the wander
-// and skew of the oscillators, noise of the stamps, and time between the algorithm's questions
-// (asked twice as often). A cause is listed if without it the mean spread of the clocks, or the
-// largest error of a host, is smaller by kLeastEffect. Causes overlap: their effects do not add up.
+// links that stopped, the temperature of the hosts, traffic, busy processors, unequal paths, queues
+// and bursts, the wander and skew of the oscillators, noise of the stamps, and time between the
+// algorithm's questions (asked twice as often). A cause is listed if without it the mean spread of
+// the clocks, or the largest error of a host, is smaller by kLeastEffect. Causes overlap: their
+// effects do not add up.
 //
 // Programs are not asked, nor are worlds in which two runs of the row take more than
-// kMostClockReadings readings of hosts. Cost: at most eight runs of a row over kCauseSeeds seeds.
+// kMostClockReadings readings of hosts. Cost: at most ten runs of a row over kCauseSeeds seeds.
 // Errors: those of evaluate_clocks().
 //
 //   const ClockCauses causes =

@@ -55,8 +55,8 @@ struct HostTimeErrors {
 };
 
 struct ClockResults {
-  Results results;                        // of ResultKind::kClockRuns
-  std::vector<StabilityCurves> curves{};  // by row
+  Results results;                                   // of ResultKind::kClockRuns
+  std::vector<StabilityCurves> curves{};             // by row
   std::vector<std::vector<HostTimeErrors>> hosts{};  // by row and seed; empty: of an archive
   std::vector<std::int64_t> follows{};    // whom each host follows; empty: all the master
   std::vector<ClockReadings> readings{};  // by row, of the first seed
