@@ -108,7 +108,7 @@ const std::vector<Golden>& goldens() {
        0x8aa78c6927ea637e},
       {"18cam_6host_30fps_without_trigger", "phase_rate", 24745, 0x5f99fae01df4dc87,
        0x4f947974fc650e3e},
-      {"4cam_wifi_ftm_10fps", "wifi_ftm", 0, 0x0, 0x0},
+      {"4cam_wifi_ftm_10fps", "wifi_ftm", 5338, 0x467416d984f4686b, 0xea9e19f8d6b2a459},
       {"4oak_poe_30fps", "pid_frame_rate", 11870, 0xc307dcc6b519a3d9, 0xb6931be9838e63ca},
       {"5phone_wifi_30fps", "libsoftwaresync", 1990, 0xf83b7a5dabb93417, 0xd1e16ba9d3659b24},
       {"6cam_gige_ptp_60fps", "periodic_ptp", 17074, 0x72551668f222b139, 0x504abda48001c912},
