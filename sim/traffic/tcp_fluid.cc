@@ -25,7 +25,7 @@ constexpr double kSameLoses = 0.3;    // or of the connection that lost the last
 constexpr double kFluctuation = 0.6;  // of a queue's frames that circulate through other queues
 constexpr double kHeldAcknowledged = 0.5;  // segments that wait for a second one
 constexpr double kLongestStepNs = 20e6;
-constexpr double kLeastFreeShare = 0.01;  // what others leave to TCP in any case
+constexpr double kLeastLeftToTcp = 0.01;  // what others leave to TCP in any case
 
 double ns_of(TrueTime t) { return static_cast<double>(t.time_since_epoch().count()); }
 
@@ -198,7 +198,7 @@ void TcpFluid::change_activity() {
   for (const FluidShare& other : others_) {
     if (now_ns_ < ns_of(other.begin) || now_ns_ >= ns_of(other.end)) continue;
     Queue& queue = queues_[other.port];
-    queue.free_per_ns = std::max(kLeastFreeShare * queue.line_per_ns,
+    queue.free_per_ns = std::max(kLeastLeftToTcp * queue.line_per_ns,
                                  queue.free_per_ns - other.share * queue.line_per_ns);
   }
 }
