@@ -40,6 +40,7 @@ TcpFluid::TcpFluid(std::vector<FluidPort> ports, std::vector<FluidConnection> co
     queue.free_per_ns = queue.line_per_ns;
     const double frames = std::floor(ports[p].buffer_bytes / kFullFrameBytes);
     if (frames > 0) queue.full_ns = std::max(1.0, frames - kFrontFrames) / queue.line_per_ns;
+    queue.pauses = ports[p].pauses && frames > 0;
   }
   for (const FluidConnection& connection : connections) add_flow(connection);
   for (const FluidShare& other : others_) {
@@ -159,7 +160,7 @@ double TcpFluid::step_length_ns() const {
   const double least_ns = shortest_ns * 0.25;
   double length_ns = kLongestStepNs;
   for (const Queue& queue : queues_) {
-    if (queue.full_ns == 0 || !queue.can_queue) continue;
+    if (queue.full_ns == 0 || !queue.can_queue || queue.pauses) continue;
     double growth_per_ns = 0;
     for (const Passer& passer : queue.passers) {
       if (passer.weight == 1) growth_per_ns += flows_[passer.flow].growth_per_ns;
@@ -274,9 +275,26 @@ void TcpFluid::solve(int most_sweeps) {
     }
     if (largest_ns < 200) break;
   }
+  hold_back();
+}
+
+void TcpFluid::hold_back() {
+  for (Flow& flow : flows_) flow.paused_ns = 0;
+  for (const Queue& queue : queues_) {
+    const double paused_ns = queue.paused_ns();
+    if (paused_ns == 0) continue;
+    for (const Passer& passer : queue.passers) {
+      if (passer.weight == 1) flows_[passer.flow].paused_ns += paused_ns;
+    }
+  }
   for (Flow& flow : flows_) {
-    const double own_delay_ns = queues_[flow.own_port].delay_ns;
-    flow.is_held_back = flow.in_flight * own_delay_ns > flow.limit_segments * flow.round_trip_ns;
+    const double own_ns = queues_[flow.own_port].delay_ns + flow.paused_ns;
+    const double own_segments = flow.in_flight * own_ns / flow.round_trip_ns;
+    flow.is_held_back = own_segments > flow.limit_segments;
+    // Nothing is lost that would make the window smaller.
+    if (flow.is_held_back && flow.paused_ns > 0) {
+      flow.window = std::max(kLeastWindow, flow.window - (own_segments - flow.limit_segments));
+    }
   }
 }
 
@@ -328,7 +346,7 @@ double TcpFluid::overflow_ns(const Queue& queue) const {
 void TcpFluid::drop(std::size_t port, double length_ns) {
   Queue& queue = queues_[port];
   queue.loss_share = 0;
-  if (queue.full_ns == 0 || queue.delay_ns <= 0.5 * queue.full_ns) return;
+  if (queue.full_ns == 0 || queue.pauses || queue.delay_ns <= 0.5 * queue.full_ns) return;
   const double limit_ns = overflow_ns(queue);
   if (queue.delay_ns <= limit_ns) return;
   const double too_long_ns = queue.delay_ns - limit_ns;
@@ -389,10 +407,23 @@ void TcpFluid::lose(Flow& flow) {
   ++flow.lost;
 }
 
+double TcpFluid::wait_ns(std::size_t port) const {
+  const Queue& queue = queues_[port];
+  double all = 0;
+  double paused = 0;
+  for (const Passer& passer : queue.passers) {
+    if (!passer.is_own) continue;
+    const Flow& flow = flows_[passer.flow];
+    all += flow.per_ns;
+    paused += flow.per_ns * flow.paused_ns;
+  }
+  return queue.delay_ns - queue.paused_ns() + (all > 0 ? paused / all : 0);
+}
+
 void TcpFluid::keep() {
   times_ns_[step_count_ % kHistory] = now_ns_;
   for (std::size_t p = 0; p < queues_.size(); ++p) {
-    delays_ns_[cell(step_count_, p)] = queues_[p].delay_ns;
+    delays_ns_[cell(step_count_, p)] = wait_ns(p);
     loss_shares_[cell(step_count_, p)] = queues_[p].loss_share;
   }
   ++step_count_;

@@ -26,6 +26,8 @@
 //    mostly of connections whose window has just grown by a whole segment, and of links as they
 //    collide with others. The loser knows a round trip later, and its window falls to 0.7 or 0.5 of
 //    what it was within another one (RFC 6937).
+//  - A port that pauses its senders (802.3x) drops nothing: its queue stays full, and what is too
+//    much waits in their hosts, with all else that they send, until TCP small queues hold it back.
 //  - Where connections also wait in other queues, the number of their frames in one fluctuates, and
 //    it overflows at a lower mean.
 //  - Acknowledgements wait where data do, and take 84 bytes on the line for two segments.
@@ -44,6 +46,7 @@
 //   const Nanoseconds wait = fluid.delay(1, now);
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -63,6 +66,7 @@ inline constexpr double kSegmentBytes = 1448;
 struct FluidPort {
   double bytes_per_ns = 0;
   double buffer_bytes = 0;  // 0: a host's own port, which drops nothing
+  bool pauses = false;      // its senders when its buffer is full, in place of dropping
 };
 
 struct FluidConnection {
@@ -118,7 +122,8 @@ class TcpFluid {
     double recovered_ns = 0;    // from knows_ns on
     double knows_later_ns = 0;  // of a loss while it recovers
     double round_trip_ns = 0;
-    double per_ns = 0;  // its rate in segments
+    double per_ns = 0;     // its rate in segments
+    double paused_ns = 0;  // what it waits in its host for ports that pause it
     double growth_per_ns = 0;
     bool has_grown = false;  // by a whole segment
     bool is_held_back = false;
@@ -140,8 +145,12 @@ class TcpFluid {
     double line_per_ns = 0;  // full frames
     double free_per_ns = 0;  // what others leave
     double full_ns = 0;      // 0: never
-    double delay_ns = 0;
+    bool pauses = false;     // its senders when it is full
+    double delay_ns = 0;     // with what waits in paused senders
     double loss_share = 0;
+
+    // What waits in paused senders.
+    double paused_ns() const { return pauses ? std::max(0.0, delay_ns - full_ns) : 0; }
     std::size_t last_loser = 0;
   };
 
@@ -165,11 +174,15 @@ class TcpFluid {
   void grow(Flow& flow, double length_ns);
   void begin_epoch(Flow& flow);
   void solve(int most_sweeps);
+  // What may be in the own hosts holds the connections back.
+  void hold_back();
   double solve_queue(std::size_t port);
   double overflow_ns(const Queue& queue) const;
   void drop(std::size_t port, double length_ns);
   std::size_t loser(const Queue& queue);
   void lose(Flow& flow);
+  // What a message meets at the port.
+  double wait_ns(std::size_t port) const;
   void keep();
 
   std::vector<Queue> queues_;

@@ -40,7 +40,9 @@ Traffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& host
   for (std::size_t port = 0; port < used_.size(); ++port) {
     if (used_[port] == kUnused) continue;
     const double buffer_bytes = port < host_count_ ? 0 : network.buffer_kb * 1e3;
-    ports_.push_back({.bytes_per_ns = line_bytes_per_ns_, .buffer_bytes = buffer_bytes});
+    ports_.push_back({.bytes_per_ns = line_bytes_per_ns_,
+                      .buffer_bytes = buffer_bytes,
+                      .pauses = network.flow_control});
     buffers.push_back(buffer_bytes);
   }
   if (!streams_.empty()) {
