@@ -25,6 +25,8 @@ constexpr double kSameLoses = 0.3;    // or of the connection that lost the last
 constexpr double kFluctuation = 0.6;  // of a queue's frames that circulate through other queues
 constexpr double kHeldAcknowledged = 0.5;  // segments that wait for a second one
 constexpr double kLongestStepNs = 20e6;
+// Of what is too much in a paused host, so that windows that share a port do not swing.
+constexpr double kHeldShare = 0.1;
 constexpr double kLeastLeftToTcp = 0.01;  // what others leave to TCP in any case
 
 double ns_of(TrueTime t) { return static_cast<double>(t.time_since_epoch().count()); }
@@ -293,7 +295,8 @@ void TcpFluid::hold_back() {
     flow.is_held_back = own_segments > flow.limit_segments;
     // Nothing is lost that would make the window smaller.
     if (flow.is_held_back && flow.paused_ns > 0) {
-      flow.window = std::max(kLeastWindow, flow.window - (own_segments - flow.limit_segments));
+      const double too_much = own_segments - flow.limit_segments;
+      flow.window = std::max(kLeastWindow, flow.window - kHeldShare * too_much);
     }
   }
 }
