@@ -90,7 +90,7 @@ class Comparison {
     const std::vector<scenarios::ParameterLine> lines =
         describe(scenarios::load_scenario(world.scenario, world.set));
     return std::ranges::any_of(lines, [&](const scenarios::ParameterLine& line) {
-      return line.pointer == parameter.pointer;
+      return line.pointer == parameter.pointer || line.pointer.starts_with(parameter.pointer + '/');
     });
   }
 
