@@ -12,8 +12,7 @@
 //
 // Files that were valid without the exception mean what they meant: their elements are complete.
 // Source: RFC 7386; docs/files.md (Scenarios).
-//
-//   merge_patch(layer.root, layer.places, resolved.document, *resolved.places);
+// The layers of a scenario (scenarios/document.h) are its patches, the base's base first.
 #pragma once
 
 #include <nlohmann/json.hpp>

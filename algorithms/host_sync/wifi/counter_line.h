@@ -12,7 +12,7 @@
 //   CounterLine line(from_ms(60e3));
 //   line.add(Nanoseconds(0), Nanoseconds(5));   // the counter is 5 ns ahead
 //   const std::optional<CounterLine::Fit> fit = line.fit();
-//   const double ahead_ns = fit->ahead_ns(from_ms(1000));
+//   const Nanoseconds ahead = fit->ahead(from_ms(1000));
 #pragma once
 
 #include <cstddef>

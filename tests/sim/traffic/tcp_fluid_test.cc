@@ -93,5 +93,23 @@ TEST(TcpFluidTest, DoesNotDependOnWhatIsAsked) {
   EXPECT_TRUE(differs);
 }
 
+// 128 kB hold 83 full frames of 12.3 us, and some of them are never waited for.
+TEST(TcpFluidTest, APortThatPausesItsSendersStaysFull) {
+  std::vector<FluidPort> ports(3, {.bytes_per_ns = kGigabit});
+  ports.resize(6, {.bytes_per_ns = kGigabit, .buffer_bytes = 128e3, .pauses = true});
+  TcpFluid fluid(ports, {connection_of({0, 5}, {2, 3}), connection_of({1, 5}, {2, 4})}, {},
+                 kTcpSeed);
+  for (int ms = 1000; ms < 20'000; ms += 7) {
+    ASSERT_NEAR(1e3 * to_ms(fluid.delay(5, at_ms(ms))), 1010, 15) << ms;
+    ASSERT_EQ(fluid.loss_share(5, at_ms(ms)), 0) << ms;
+    // What is too much waits in the senders, as much as a connection may have there.
+    for (const std::size_t host : {std::size_t{0}, std::size_t{1}}) {
+      ASSERT_GT(fluid.delay(host, at_ms(ms)), from_us(200)) << ms;
+      ASSERT_LT(fluid.delay(host, at_ms(ms)), from_us(6000)) << ms;
+    }
+    ASSERT_EQ(fluid.delay(2, at_ms(ms)), Nanoseconds(0)) << ms;
+  }
+}
+
 }  // namespace
 }  // namespace simbench::sim

@@ -80,5 +80,27 @@ TEST(TrafficTest, TcpTakesWhatStreamsLeave) {
   EXPECT_GT(traffic.at_switch(2, at_ms(5000)).wait, from_us(400));
 }
 
+// Each minute has numbers of its own: whoever asks in one alone finds the same.
+TEST(TrafficTest, AMinuteDoesNotDependOnTheMinutesBefore) {
+  const scenarios::Network network =
+      network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
+                    {.kind = TrafficKind::kTcp, .from = 1, .to = 2}});
+  Traffic often(network, {}, kTrafficSeed, 3);
+  Traffic once(network, {}, kTrafficSeed, 3);
+  Nanoseconds last{};
+  for (int second = -90; second <= 200; ++second)
+    last = often.at_switch(2, at_ms(1e3 * second)).wait;
+  EXPECT_EQ(once.at_switch(2, at_ms(200e3)).wait, last);
+  EXPECT_GT(last, from_us(400));
+}
+
+TEST(TrafficTest, ALateQuestionOfTheMinuteBeforeIsAnswered) {
+  Traffic traffic(network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
+                                {.kind = TrafficKind::kTcp, .from = 1, .to = 2}}),
+                  {}, kTrafficSeed, 3);
+  EXPECT_GT(traffic.at_switch(2, at_ms(60'000.1)).wait, from_us(400));
+  EXPECT_GT(traffic.at_switch(2, at_ms(59'999.9)).wait, from_us(400));
+}
+
 }  // namespace
 }  // namespace simbench::sim
