@@ -44,7 +44,8 @@ void refuse_member(const Scenario& scenario, const std::string& pointer, const T
                       kinds));
 }
 
-void check_members(const Scenario& scenario, const std::string& pointer, const Traffic& traffic) {
+void check_traffic_members(const Scenario& scenario, const std::string& pointer,
+                           const Traffic& traffic) {
   const bool is_tcp = traffic.kind == TrafficKind::kTcp;
   const Traffic usual;
   if (!is_tcp && !traffic.mbit_per_s) {
@@ -92,7 +93,7 @@ void check_traffic(const Scenario& scenario) {
           scenario, pointer + "/end_s",
           fmt::format("found {}, allowed more than begin_s, {}", *traffic.end_s, traffic.begin_s));
     }
-    check_members(scenario, pointer, traffic);
+    check_traffic_members(scenario, pointer, traffic);
   }
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string text_of(const json& value) {
+std::string json_text(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -25,7 +25,7 @@ RealitySetting setting_of(const json& in) {
                          .factor = in.at("factor"),
                          .used_for = in.at("used_for")};
   for (const auto& [pointer, value] : in.at("set").items()) {
-    setting.set.push_back({.pointer = pointer, .value = text_of(value)});
+    setting.set.push_back({.pointer = pointer, .value = json_text(value)});
   }
   return setting;
 }
@@ -33,10 +33,10 @@ RealitySetting setting_of(const json& in) {
 UnknownParameter unknown_of(const json& in) {
   UnknownParameter unknown{.what = in.at("what"),
                            .pointer = in.at("pointer"),
-                           .nominal = text_of(in.at("nominal")),
+                           .nominal = json_text(in.at("nominal")),
                            .values = {},
                            .source = in.at("source")};
-  for (const json& value : in.at("values")) unknown.values.push_back(text_of(value));
+  for (const json& value : in.at("values")) unknown.values.push_back(json_text(value));
   return unknown;
 }
 

@@ -19,7 +19,7 @@
 
 namespace simbench::scenarios {
 
-// Of the time errors of a host in a run: against true time, or against the master.
+// Quantiles of the time errors of a host in a run: against true time, or against the master.
 enum class RealityQuantity : std::uint8_t {
   kMedianAbsTe,
   kP95AbsTe,

@@ -71,7 +71,7 @@ ClockSpan span_of(const Scenario& scenario, const ClockOptions& options) {
           .hosts = static_cast<std::size_t>(scenario.hosts.count)};
 }
 
-HostTe median_of(const std::vector<HostTe>& seeds) {
+HostTe median_te_of(const std::vector<HostTe>& seeds) {
   const auto median_te = [&seeds](double HostTe::*value) {
     std::vector<double> values;
     for (const HostTe& seed : seeds) values.push_back(seed.*value);
@@ -218,7 +218,7 @@ HostTimeErrors host_medians(const std::vector<HostTimeErrors>& seeds) {
     for (std::size_t host = 0; host < (seeds.front().*list).size(); ++host) {
       std::vector<HostTe> of_host;
       for (const HostTimeErrors& seed : seeds) of_host.push_back((seed.*list)[host]);
-      (medians.*list).push_back(median_of(of_host));
+      (medians.*list).push_back(median_te_of(of_host));
     }
   }
   return medians;

@@ -71,7 +71,7 @@ double spread_of(std::span<const double> errors_s) {
   return (*greatest - *least) * 1e3;
 }
 
-// Of the errors of a clock, in seconds.
+// The errors are of one clock, in seconds.
 HostTe te_of(std::vector<double> errors_s) {
   std::ranges::sort(errors_s);
   HostTe te{.median_ms = 1e3 * quantile_of_sorted(errors_s, 0.5)};

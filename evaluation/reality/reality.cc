@@ -47,10 +47,10 @@ double value_us(const RealitySetting& setting, const HostTimeErrors& errors) {
   return 1e3 * (is_median ? host.median_abs_ms : host.p95_abs_ms);
 }
 
-class Comparison {
+class RealityComparison {
  public:
-  Comparison(const RealRecording& recording, const ClockWorldFactory& make_world,
-             const RealityOptions& options, const Progress& progress)
+  RealityComparison(const RealRecording& recording, const ClockWorldFactory& make_world,
+                    const RealityOptions& options, const Progress& progress)
       : recording_(recording),
         make_world_(make_world),
         options_(options),
@@ -171,7 +171,7 @@ std::vector<RealityRow> compare_with_reality(const RealRecording& recording,
                                              const ClockWorldFactory& make_world,
                                              const RealityOptions& options,
                                              const Progress& progress) {
-  return Comparison(recording, make_world, options, progress).run();
+  return RealityComparison(recording, make_world, options, progress).run();
 }
 
 }  // namespace simbench::evaluation

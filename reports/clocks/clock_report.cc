@@ -162,7 +162,7 @@ Document clock_document(const ClockResults& results, const std::string& summary)
 
 namespace {
 
-// Of the hosts from `first` on.
+// The hosts from `first` on.
 Json host_errors_json(const std::vector<evaluation::HostTe>& hosts, std::size_t first) {
   Json all = Json::array();
   for (std::size_t host = first; host < hosts.size(); ++host) {

@@ -19,14 +19,14 @@ std::string range_text(double least, double largest) {
   return least == largest ? number_text(least) : number_text(least) + " to " + number_text(largest);
 }
 
-std::string verdict(const RealityRow& row) {
+std::string reality_verdict(const RealityRow& row) {
   const std::string within =
       fmt::format("{} {:g}", row.is_within() ? "within" : "NOT within", row.setting->factor);
   return row.counts() ? within : within + " (known)";
 }
 
-double least(const std::vector<double>& values) { return *std::ranges::min_element(values); }
-double largest(const std::vector<double>& values) { return *std::ranges::max_element(values); }
+double least_of(const std::vector<double>& values) { return *std::ranges::min_element(values); }
+double most_of(const std::vector<double>& values) { return *std::ranges::max_element(values); }
 
 Table rows_table(const RealityResult& result) {
   const std::vector<Field<RealityRow>> fields = {
@@ -39,10 +39,10 @@ Table rows_table(const RealityResult& result) {
       {{"predicted us"}, [](const RealityRow& row) { return number_text(row.median_us()); }},
       {{"over seeds"},
        [](const RealityRow& row) {
-         return range_text(least(row.predicted_us), largest(row.predicted_us));
+         return range_text(least_of(row.predicted_us), most_of(row.predicted_us));
        }},
       {{"ratio"}, [](const RealityRow& row) { return fmt::format("{:.2f}", row.ratio()); }},
-      {{"verdict", Align::kLeft}, verdict}};
+      {{"verdict", Align::kLeft}, reality_verdict}};
   return table_of(fields, result.rows);
 }
 
@@ -56,10 +56,10 @@ Block unknown_block(const RealityResult& result) {
       for (const RealitySpan& span : row.spans) {
         if (span.parameter == &unknown) values.push_back(span.predicted_us);
       }
-      const bool moves = values.size() > 1 && largest(values) > 1.1 * least(values);
+      const bool moves = values.size() > 1 && most_of(values) > 1.1 * least_of(values);
       if (!moves) continue;
-      spans.push_back(
-          fmt::format("{} {} us", row.setting->name, range_text(least(values), largest(values))));
+      spans.push_back(fmt::format("{} {} us", row.setting->name,
+                                  range_text(least_of(values), most_of(values))));
     }
     std::string line = fmt::format("{} ({} = {}; {}).", unknown.what, unknown.pointer,
                                    unknown.nominal, unknown.source);
@@ -69,7 +69,7 @@ Block unknown_block(const RealityResult& result) {
   return block;
 }
 
-std::string headline(const std::vector<RealityResult>& results) {
+std::string reality_headline(const std::vector<RealityResult>& results) {
   std::size_t counted = 0;
   std::size_t within = 0;
   double worst = 1;
@@ -95,19 +95,19 @@ std::string headline(const std::vector<RealityResult>& results) {
              : text + fmt::format("; the furthest is off by a factor of {:.1f}: {}.", worst, where);
 }
 
-Json spread_json(double median, const std::vector<double>& values) {
-  return {{"median", median}, {"least", least(values)}, {"largest", largest(values)}};
+Json us_json(double median, const std::vector<double>& values) {
+  return {{"median", median}, {"least", least_of(values)}, {"largest", most_of(values)}};
 }
 
-Json row_json(const RealityRow& row) {
+Json setting_json(const RealityRow& row) {
   const scenarios::RealitySetting& setting = *row.setting;
   Json out = {{"name", setting.name},
               {"scenario", setting.scenario},
               {"pipeline", setting.pipeline},
               {"host", setting.host},
               {"quantity", to_text(setting.quantity)},
-              {"measured_us", spread_json(row.measured_us(), setting.measured_us)},
-              {"predicted_us", spread_json(row.median_us(), row.predicted_us)},
+              {"measured_us", us_json(row.measured_us(), setting.measured_us)},
+              {"predicted_us", us_json(row.median_us(), row.predicted_us)},
               {"ratio", row.ratio()},
               {"factor", setting.factor},
               {"is_within", row.is_within()},
@@ -129,7 +129,7 @@ Document reality_document(const std::vector<RealityResult>& results) {
   Document document{
       .title = "The bench beside reality",
       .head = {
-          headline(results),
+          reality_headline(results),
           "A prediction has its parameters from documents alone. (known): the figure was known "
           "when the mechanism was chosen, so it does not count. Measured: the median and the "
           "range of the recording's stretches or devices; predicted: of the seeds."}};
@@ -160,7 +160,7 @@ std::string reality_json(const std::vector<RealityResult>& results) {
                 {"from_s", recording.from_s},
                 {"rows", Json::array()},
                 {"unknown", Json::array()}};
-    for (const RealityRow& row : result.rows) out["rows"].push_back(row_json(row));
+    for (const RealityRow& row : result.rows) out["rows"].push_back(setting_json(row));
     for (const UnknownParameter& unknown : recording.unknown) {
       out["unknown"].push_back({{"what", unknown.what},
                                 {"pointer", unknown.pointer},

@@ -93,7 +93,7 @@ class HostGroup {
   RecordingSink& sink_;
   RunLoad load_;
   Outages outages_;
-  Traffic traffic_;
+  CrossTraffic traffic_;
   SimNetwork network_;
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;

@@ -32,9 +32,9 @@
 // port and each trunk once, and is replicated in the switches towards the members' ports. From
 // there on each copy is a datagram like others, with a number of its own on its path.
 //
-// Traffic between hosts (network/traffic; sim/traffic/traffic.h) passes the same ports: a message
-// waits in its host's own queue and at each switch port for what is there. Where a buffer overflows
-// it may be lost, a datagram for good, a segment of a stream until its timeout.
+// CrossTraffic between hosts (network/traffic; sim/traffic/traffic.h) passes the same ports: a
+// message waits in its host's own queue and at each switch port for what is there. Where a buffer
+// overflows it may be lost, a datagram for good, a segment of a stream until its timeout.
 //
 // Capture traffic: the frames that a host sends on pass its port like messages, in the order of
 // their delivery and each in one piece, towards a storage whose own port is not modelled. Messages
@@ -147,7 +147,7 @@ class SimNetwork : private EventHandler {
   void before_messages(std::function<void()> catch_up) { catch_up_ = std::move(catch_up); }
 
   // Messages meet this traffic, which must outlive the network's events.
-  void meet(Traffic& traffic) { traffic_ = &traffic; }
+  void meet(CrossTraffic& traffic) { traffic_ = &traffic; }
 
   // The messages from the peer that have arrived at the host that opened `path`.
   Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }

@@ -25,7 +25,8 @@ constexpr double kSameLoses = 0.3;    // or of the connection that lost the last
 constexpr double kFluctuation = 0.6;  // of a queue's frames that circulate through other queues
 constexpr double kHeldAcknowledged = 0.5;  // segments that wait for a second one
 constexpr double kLongestStepNs = 20e6;
-// Of what is too much in a paused host, so that windows that share a port do not swing.
+// The share of what is too much in a paused host by which a window shrinks in a step, so that
+// windows that share a port do not swing.
 constexpr double kHeldShare = 0.1;
 constexpr double kLeastLeftToTcp = 0.01;  // what others leave to TCP in any case
 

@@ -18,8 +18,8 @@ TrueTime at_second(double seconds) { return TrueTime(from_seconds(seconds)); }
 
 }  // namespace
 
-Traffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& hosts,
-                 std::uint64_t run_seed, std::size_t host_count)
+CrossTraffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& hosts,
+                      std::uint64_t run_seed, std::size_t host_count)
     : host_count_(host_count),
       switch_of_host_(network.switch_of_host),
       line_bytes_per_ns_(network.bandwidth_mbit_per_s / 8'000),
@@ -50,7 +50,7 @@ Traffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& host
   }
 }
 
-std::vector<std::size_t> Traffic::ports_of(Way way) const {
+std::vector<std::size_t> CrossTraffic::ports_of(Way way) const {
   std::vector<std::size_t> ports{way.from};
   std::size_t number = switch_of(way.from);
   const std::size_t last = switch_of(way.to);
@@ -63,13 +63,13 @@ std::vector<std::size_t> Traffic::ports_of(Way way) const {
   return ports;
 }
 
-std::vector<std::size_t> Traffic::used_ports_of(Way way) const {
+std::vector<std::size_t> CrossTraffic::used_ports_of(Way way) const {
   std::vector<std::size_t> ports = ports_of(way);
   for (std::size_t& port : ports) port = used_[port];
   return ports;
 }
 
-void Traffic::number_ports(const std::vector<scenarios::Traffic>& traffic) {
+void CrossTraffic::number_ports(const std::vector<scenarios::Traffic>& traffic) {
   used_.assign(switch_port(host_count_), kUnused);
   for (const scenarios::Traffic& stream : traffic) {
     const auto from = static_cast<std::size_t>(stream.from);
@@ -85,7 +85,8 @@ void Traffic::number_ports(const std::vector<scenarios::Traffic>& traffic) {
   }
 }
 
-void Traffic::add(const scenarios::Traffic& traffic, Way way, const scenarios::Network& network) {
+void CrossTraffic::add(const scenarios::Traffic& traffic, Way way,
+                       const scenarios::Network& network) {
   const TrueTime begin = at_second(traffic.begin_s);
   const TrueTime end = traffic.end_s ? at_second(*traffic.end_s) : TrueTime::max();
   const std::vector<std::size_t> ports = used_ports_of(way);
@@ -116,14 +117,14 @@ void Traffic::add(const scenarios::Traffic& traffic, Way way, const scenarios::N
                       .end = end});
 }
 
-Nanoseconds Traffic::base_round_trip(Way way, const scenarios::Network& network) const {
+Nanoseconds CrossTraffic::base_round_trip(Way way, const scenarios::Network& network) const {
   const auto hops = static_cast<double>(ports_of(way).size());
   const double on_the_lines_ns = hops * (kFullFrameBytes + kAckFrameBytes) / line_bytes_per_ns_;
   const double fixed_ms = 2 * (network.latency_fixed_ms + (hops - 1) * network.switch_residence_ms);
   return from_ms(fixed_ms) + from_ns(on_the_lines_ns + 2 * kStackNs);
 }
 
-TcpFluid* Traffic::fluid_at(TrueTime at) {
+TcpFluid* CrossTraffic::fluid_at(TrueTime at) {
   if (connections_.empty()) return nullptr;
   const std::int64_t minute = floor_div(at.time_since_epoch().count(), kMinute.count());
   // What comes a little before the newest minute is within its lead.
@@ -139,14 +140,14 @@ TcpFluid* Traffic::fluid_at(TrueTime at) {
   return &*fluid_;
 }
 
-Nanoseconds Traffic::wait(std::size_t port, TrueTime at) {
+Nanoseconds CrossTraffic::wait(std::size_t port, TrueTime at) {
   TcpFluid* const tcp = fluid_at(at);
   const Nanoseconds behind_tcp = tcp != nullptr ? tcp->delay(port, at) : Nanoseconds(0);
   const Nanoseconds behind_frames = bursts_ ? bursts_->wait(port, at) : Nanoseconds(0);
   return std::max(behind_tcp, behind_frames);
 }
 
-HostWait Traffic::at_host(PeerId host, TrueTime at) {
+HostWait CrossTraffic::at_host(PeerId host, TrueTime at) {
   if (is_none() || used_[host] == kUnused) return {};
   const Nanoseconds backlog = wait(used_[host], at);
   const Nanoseconds ring = from_ns(send_queue_.ring_kb * 1e3 / line_bytes_per_ns_);
@@ -158,13 +159,15 @@ HostWait Traffic::at_host(PeerId host, TrueTime at) {
   return result;
 }
 
-TrafficPassage Traffic::at_switch(PeerId to, TrueTime at) { return passage(switch_port(to), at); }
+TrafficPassage CrossTraffic::at_switch(PeerId to, TrueTime at) {
+  return passage(switch_port(to), at);
+}
 
-TrafficPassage Traffic::at_trunk(std::size_t number, bool up, TrueTime at) {
+TrafficPassage CrossTraffic::at_trunk(std::size_t number, bool up, TrueTime at) {
   return passage(trunk_port(number, up), at);
 }
 
-TrafficPassage Traffic::passage(std::size_t port, TrueTime at) {
+TrafficPassage CrossTraffic::passage(std::size_t port, TrueTime at) {
   if (is_none() || used_[port] == kUnused) return {};
   const std::size_t used = used_[port];
   TrafficPassage result;
@@ -176,7 +179,7 @@ TrafficPassage Traffic::passage(std::size_t port, TrueTime at) {
   return result;
 }
 
-double Traffic::overload_share(std::size_t port) const {
+double CrossTraffic::overload_share(std::size_t port) const {
   if (!bursts_ || used_[port] == kUnused) return 0;
   return bursts_->overload_share(used_[port]);
 }

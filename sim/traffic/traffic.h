@@ -25,7 +25,7 @@
 // Source: scenario /network/traffic, /network/buffer_kb, /hosts/send_queue; docs/design.md
 // section 7.
 //
-//   Traffic traffic(scenario.network, scenario.hosts, seed, 4);
+//   CrossTraffic traffic(scenario.network, scenario.hosts, seed, 4);
 //   const HostWait wait = traffic.at_host(0, now);
 //   const TrafficPassage passage = traffic.at_switch(3, now + wait.in_queue + wait.in_ring);
 #pragma once
@@ -54,10 +54,10 @@ struct TrafficPassage {
   double loss_share = 0;  // the probability that the port drops the message
 };
 
-class Traffic {
+class CrossTraffic {
  public:
-  Traffic(const scenarios::Network& network, const scenarios::Hosts& hosts, std::uint64_t run_seed,
-          std::size_t host_count);
+  CrossTraffic(const scenarios::Network& network, const scenarios::Hosts& hosts,
+               std::uint64_t run_seed, std::size_t host_count);
 
   bool is_none() const { return connections_.empty() && !bursts_; }
 

@@ -165,8 +165,8 @@ Task<std::optional<HostTime>> arrival_of(Host& host, const ReceivedMessage& mess
 }
 
 // When the message left, by its host's stamp.
-Task<std::optional<HostTime>> departure_of(Host& host, MessageChannel& channel,
-                                           MessageStamps& departures, MessageId id) {
+Task<std::optional<HostTime>> stamped_departure(Host& host, MessageChannel& channel,
+                                                MessageStamps& departures, MessageId id) {
   const std::optional<std::int64_t> left = co_await departures.departure(channel, id);
   if (!left) co_return std::nullopt;
   if (departures.source() != StampSource::kCard) co_return HostTime(Nanoseconds(*left));
@@ -199,7 +199,8 @@ Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout
   const SteadyTime deadline = host_.steady_clock().now() + timeout;
   const MessageId id = co_await channel_.send(std::move(bytes));
   if (stamps_ == NtpStamps::kKernel || stamps_ == NtpStamps::kCard) {
-    const std::optional<HostTime> left = co_await departure_of(host_, channel_, departures_, id);
+    const std::optional<HostTime> left =
+        co_await stamped_departure(host_, channel_, departures_, id);
     measurement.is_stamped = left.has_value();
     if (left) measurement.t1 = *left;
   }
@@ -257,7 +258,7 @@ class NtpReplies {
     if (stamps_ == NtpStamps::kProgram) reply.left = transmit;
     // The card's clock runs by itself: its stamp is converted at once.
     if (stamps_ == NtpStamps::kCard) {
-      reply.left = co_await departure_of(host_, channel_, departures_, id);
+      reply.left = co_await stamped_departure(host_, channel_, departures_, id);
     }
     sent_.push_back(reply);
     if (sent_.size() > kRepliesKept) sent_.pop_front();

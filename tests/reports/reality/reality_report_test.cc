@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const scenarios::RealRecording& measured() {
+const scenarios::RealRecording& measured_rig() {
   static const scenarios::RealRecording recording = [] {
     scenarios::RealRecording all{.name = "test",
                                  .title = "Two hosts",
@@ -36,8 +36,8 @@ const scenarios::RealRecording& measured() {
   return recording;
 }
 
-std::vector<RealityResult> results(double idle_us) {
-  const scenarios::RealRecording& recording = measured();
+std::vector<RealityResult> reality_results(double idle_us) {
+  const scenarios::RealRecording& recording = measured_rig();
   return {{.recording = &recording,
            .rows = {{.setting = recording.settings.data(),
                      .predicted_us = {idle_us},
@@ -48,20 +48,20 @@ std::vector<RealityResult> results(double idle_us) {
 }
 
 TEST(RealityReport, TheHeadlineCountsWhatNothingWasChosenBy) {
-  EXPECT_THAT(plain(reality_document(results(30))),
+  EXPECT_THAT(plain(reality_document(reality_results(30))),
               HasSubstr("1 of 1 figures that nothing was chosen by are predicted within their "
                         "factor; the furthest is off by a factor of 1.5: idle."));
-  EXPECT_THAT(plain(reality_document(results(5))),
+  EXPECT_THAT(plain(reality_document(reality_results(5))),
               HasSubstr("0 of 1 figures that nothing was chosen by"));
-  EXPECT_THAT(plain(reality_document(results(5))), HasSubstr("NOT within 2 (known)"));
+  EXPECT_THAT(plain(reality_document(reality_results(5))), HasSubstr("NOT within 2 (known)"));
 }
 
 TEST(RealityReport, WhatIsUnknownSaysWhatItSpans) {
-  EXPECT_THAT(plain(reality_document(results(30))), HasSubstr("idle 30.0 to 150 us"));
+  EXPECT_THAT(plain(reality_document(reality_results(30))), HasSubstr("idle 30.0 to 150 us"));
 }
 
 TEST(RealityReport, JsonHasEachRow) {
-  const auto json = nlohmann::json::parse(reality_json(results(30)));
+  const auto json = nlohmann::json::parse(reality_json(reality_results(30)));
   EXPECT_EQ(json["kind"], "reality");
   const auto& row = json["recordings"][0]["rows"][0];
   EXPECT_EQ(row["measured_us"]["median"], 20);

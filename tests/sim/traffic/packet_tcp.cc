@@ -9,7 +9,7 @@
 namespace simbench {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNoEvent = std::numeric_limits<double>::infinity();
 constexpr double kDataBytes = 1538;
 constexpr double kAckBytes = 84;
 constexpr double kTimeoutNs = 200e6;
@@ -38,7 +38,7 @@ class EarliestTime {
  public:
   explicit EarliestTime(std::size_t count) {
     while (leaves_ < count) leaves_ *= 2;
-    times_.assign(leaves_, kNever);
+    times_.assign(leaves_, kNoEvent);
     winners_.assign(2 * leaves_, 0);
     for (std::size_t i = 0; i < leaves_; ++i) winners_[leaves_ + i] = i;
     for (std::size_t i = leaves_ - 1; i > 0; --i) decide(i);
@@ -86,7 +86,7 @@ struct Sender {
   double recovery_delivered = 0;
   double recovery_sent = 0;
   double round_trip_ns = 1e6;
-  double timer_ns = kNever;
+  double timer_ns = kNoEvent;
   bool was_probed = false;
   // CUBIC
   double window_max = 0;
@@ -100,7 +100,7 @@ struct Receiver {
   std::int64_t expected = 0;
   std::vector<char> has = std::vector<char>(kRing, 0);
   int unacknowledged = 0;
-  double ack_due_ns = kNever;
+  double ack_due_ns = kNoEvent;
   std::int64_t last_segment = 0;
   std::int64_t last_transmission = 0;
   bool has_hole = false;
@@ -158,7 +158,7 @@ class Simulation {
       Pipe& pipe = pipes_[which];
       const Packet packet = pipe.packets.front().second;
       pipe.packets.pop_front();
-      earliest_.set(which, pipe.packets.empty() ? kNever : pipe.packets.front().first);
+      earliest_.set(which, pipe.packets.empty() ? kNoEvent : pipe.packets.front().first);
       if (which < ports_) {
         queued_bytes_[which] -= packet.is_ack ? kAckBytes : kDataBytes;
         leave_port(packet);
@@ -174,7 +174,7 @@ class Simulation {
     if (kind == 2) send_ack(c, receivers_[c].last_segment, receivers_[c].last_transmission);
     if (kind == 3) on_timer(c);
     if (kind == 4) {
-      earliest_.set(which, kNever);
+      earliest_.set(which, kNoEvent);
       send_what_may_be(c);
     }
   }
@@ -258,7 +258,7 @@ class Simulation {
   void send_ack(std::size_t c, std::int64_t selective, std::int64_t transmission) {
     Receiver& receiver = receivers_[c];
     receiver.unacknowledged = 0;
-    earliest_.set(ports_ + 2 * connections_ + c, kNever);
+    earliest_.set(ports_ + 2 * connections_ + c, kNoEvent);
     enter_port({.connection = static_cast<std::uint32_t>(c),
                 .hop = 0,
                 .is_ack = true,
@@ -414,7 +414,7 @@ class Simulation {
     ++sender.in_flight;
     if (sender.is_recovering) ++sender.recovery_sent;
     sender.queued_bytes += kDataBytes;
-    if (sender.timer_ns == kNever) set_timer(c, now_ns_ + 2 * sender.round_trip_ns + kProbeNs);
+    if (sender.timer_ns == kNoEvent) set_timer(c, now_ns_ + 2 * sender.round_trip_ns + kProbeNs);
     enter_port({.connection = static_cast<std::uint32_t>(c),
                 .hop = 0,
                 .is_ack = false,
@@ -455,7 +455,7 @@ class Simulation {
   const PacketWorld& world_;
   std::size_t ports_;
   std::size_t connections_;
-  // Of the ports, then for each connection of its segments and its acknowledgements.
+  // The ports', then for each connection of its segments and its acknowledgements.
   std::vector<Pipe> pipes_;
   // The pipes, then acknowledgements that are due, timers and begins of the connections.
   EarliestTime earliest_;

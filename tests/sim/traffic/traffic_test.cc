@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t kTrafficSeed = 21;
 using scenarios::TrafficKind;
 
-scenarios::Network network_with(std::vector<scenarios::Traffic> traffic) {
+scenarios::Network loaded_network(std::vector<scenarios::Traffic> traffic) {
   scenarios::Network network;
   network.bandwidth_mbit_per_s = 1000;
   network.latency_fixed_ms = 0.005;
@@ -20,7 +20,7 @@ scenarios::Network network_with(std::vector<scenarios::Traffic> traffic) {
 }
 
 TEST(TrafficTest, NoneIsNone) {
-  Traffic traffic(network_with({}), {}, kTrafficSeed, 3);
+  CrossTraffic traffic(loaded_network({}), {}, kTrafficSeed, 3);
   EXPECT_TRUE(traffic.is_none());
   EXPECT_EQ(traffic.at_host(0, at_ms(1)).in_queue, Nanoseconds(0));
   EXPECT_EQ(traffic.at_switch(2, at_ms(1)).wait, Nanoseconds(0));
@@ -33,22 +33,22 @@ TEST(TrafficTest, TheOwnHostsBacklogLiesInRingAndQueue) {
   hosts.send_queue = scenarios::SendQueue{
       .discipline = scenarios::QueueDiscipline::kPfifoFast, .ring_kb = 30, .connection_kb = 100};
   const scenarios::Network network =
-      network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 1}});
-  Traffic fifo(network, hosts, kTrafficSeed, 3);
+      loaded_network({{.kind = TrafficKind::kTcp, .from = 0, .to = 1}});
+  CrossTraffic fifo(network, hosts, kTrafficSeed, 3);
   EXPECT_NEAR(1e3 * to_ms(fifo.at_host(0, at_ms(5000)).in_ring), 240, 0.1);
   EXPECT_NEAR(1e3 * to_ms(fifo.at_host(0, at_ms(5000)).in_queue), 560, 2);
   EXPECT_EQ(fifo.at_host(2, at_ms(5000)).in_ring, Nanoseconds(0));
   hosts.send_queue->discipline = scenarios::QueueDiscipline::kFqCodel;
-  Traffic fair(network, hosts, kTrafficSeed, 3);
+  CrossTraffic fair(network, hosts, kTrafficSeed, 3);
   EXPECT_NEAR(1e3 * to_ms(fair.at_host(0, at_ms(5000)).in_ring), 240, 0.1);
   EXPECT_EQ(fair.at_host(0, at_ms(5000)).in_queue, Nanoseconds(0));
 }
 
 TEST(TrafficTest, StreamsPassTheTrunksBetweenTheirSwitches) {
-  scenarios::Network network = network_with(
+  scenarios::Network network = loaded_network(
       {{.kind = TrafficKind::kPaced, .from = 0, .to = 2, .mbit_per_s = 990, .burst_kb = 64}});
   network.switch_of_host = {0, 1, 2};
-  Traffic traffic(network, {}, kTrafficSeed, 3);
+  CrossTraffic traffic(network, {}, kTrafficSeed, 3);
   const auto longest = [&](auto wait_at) {
     Nanoseconds most{0};
     for (int i = 0; i < 500; ++i) most = std::max(most, wait_at(at_ms(10 + 0.1 * i)));
@@ -63,17 +63,17 @@ TEST(TrafficTest, StreamsPassTheTrunksBetweenTheirSwitches) {
 }
 
 TEST(TrafficTest, BothWaysLoadsBothHosts) {
-  Traffic traffic(
-      network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 1, .both_ways = true}}), {},
+  CrossTraffic traffic(
+      loaded_network({{.kind = TrafficKind::kTcp, .from = 0, .to = 1, .both_ways = true}}), {},
       kTrafficSeed, 2);
   EXPECT_GT(traffic.at_host(0, at_ms(5000)).in_queue, from_us(400));
   EXPECT_GT(traffic.at_host(1, at_ms(5000)).in_queue, from_us(400));
 }
 
 TEST(TrafficTest, TcpTakesWhatStreamsLeave) {
-  Traffic traffic(
-      network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
-                    {.kind = TrafficKind::kPaced, .from = 1, .to = 2, .mbit_per_s = 500}}),
+  CrossTraffic traffic(
+      loaded_network({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
+                      {.kind = TrafficKind::kPaced, .from = 1, .to = 2, .mbit_per_s = 500}}),
       {}, kTrafficSeed, 3);
   // Its queue now stands in the switch, not in its host.
   EXPECT_EQ(traffic.at_host(0, at_ms(5000)).in_queue, Nanoseconds(0));
@@ -83,10 +83,10 @@ TEST(TrafficTest, TcpTakesWhatStreamsLeave) {
 // Each minute has numbers of its own: whoever asks in one alone finds the same.
 TEST(TrafficTest, AMinuteDoesNotDependOnTheMinutesBefore) {
   const scenarios::Network network =
-      network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
-                    {.kind = TrafficKind::kTcp, .from = 1, .to = 2}});
-  Traffic often(network, {}, kTrafficSeed, 3);
-  Traffic once(network, {}, kTrafficSeed, 3);
+      loaded_network({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
+                      {.kind = TrafficKind::kTcp, .from = 1, .to = 2}});
+  CrossTraffic often(network, {}, kTrafficSeed, 3);
+  CrossTraffic once(network, {}, kTrafficSeed, 3);
   Nanoseconds last{};
   for (int second = -90; second <= 200; ++second)
     last = often.at_switch(2, at_ms(1e3 * second)).wait;
@@ -95,9 +95,9 @@ TEST(TrafficTest, AMinuteDoesNotDependOnTheMinutesBefore) {
 }
 
 TEST(TrafficTest, ALateQuestionOfTheMinuteBeforeIsAnswered) {
-  Traffic traffic(network_with({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
-                                {.kind = TrafficKind::kTcp, .from = 1, .to = 2}}),
-                  {}, kTrafficSeed, 3);
+  CrossTraffic traffic(loaded_network({{.kind = TrafficKind::kTcp, .from = 0, .to = 2},
+                                       {.kind = TrafficKind::kTcp, .from = 1, .to = 2}}),
+                       {}, kTrafficSeed, 3);
   EXPECT_GT(traffic.at_switch(2, at_ms(60'000.1)).wait, from_us(400));
   EXPECT_GT(traffic.at_switch(2, at_ms(59'999.9)).wait, from_us(400));
 }
