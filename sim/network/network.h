@@ -265,7 +265,7 @@ class SimNetwork : private EventHandler {
   RunLoad load_;
   const Outages& outages_;
   WorldObserver* observer_ = nullptr;
-  Traffic* traffic_ = nullptr;  // null: none
+  CrossTraffic* traffic_ = nullptr;  // null: none
   std::function<void()> catch_up_;
   std::uint64_t messages_ = 0;
   SwitchClock switch_clock_;
