@@ -18,8 +18,8 @@ TrueTime at_second(double seconds) { return TrueTime(from_seconds(seconds)); }
 
 }  // namespace
 
-CrossTraffic::Traffic(const scenarios::Network& network, const scenarios::Hosts& hosts,
-                      std::uint64_t run_seed, std::size_t host_count)
+CrossTraffic::CrossTraffic(const scenarios::Network& network, const scenarios::Hosts& hosts,
+                           std::uint64_t run_seed, std::size_t host_count)
     : host_count_(host_count),
       switch_of_host_(network.switch_of_host),
       line_bytes_per_ns_(network.bandwidth_mbit_per_s / 8'000),
