@@ -101,7 +101,7 @@ struct HostWorld {
   const DriftFiles& drift_files;
   FrameSupply& frames;
   RecordingSink& sink;
-  std::uint64_t run_seed;
+  std::uint64_t run_seed = 0;
   const AccessPoint* access_point = nullptr;  // null: no radio has a clock for programs
 };
 

@@ -87,7 +87,7 @@ void TcpFluid::add_flow(const FluidConnection& connection) {
   // A port that one other port feeds, at no higher rate, never queues.
   for (const auto* way : {&connection.data_ports, &connection.ack_ports}) {
     for (std::size_t i = 1; i < way->size(); ++i) {
-      feeds_.push_back({(*way)[i - 1], (*way)[i]});
+      feeds_.emplace_back((*way)[i - 1], (*way)[i]);
     }
   }
 }
