@@ -74,6 +74,7 @@ ClockSpan span_of(const Scenario& scenario, const ClockOptions& options) {
 HostTe median_te_of(const std::vector<HostTe>& seeds) {
   const auto median_te = [&seeds](double HostTe::*value) {
     std::vector<double> values;
+    values.reserve(seeds.size());
     for (const HostTe& seed : seeds) values.push_back(seed.*value);
     return median(std::move(values));
   };
@@ -217,6 +218,7 @@ HostTimeErrors host_medians(const std::vector<HostTimeErrors>& seeds) {
   for (const auto list : {&HostTimeErrors::to_truth, &HostTimeErrors::to_master}) {
     for (std::size_t host = 0; host < (seeds.front().*list).size(); ++host) {
       std::vector<HostTe> of_host;
+      of_host.reserve(seeds.size());
       for (const HostTimeErrors& seed : seeds) of_host.push_back((seed.*list)[host]);
       (medians.*list).push_back(median_te_of(of_host));
     }
