@@ -243,7 +243,8 @@ scenarios::Hosts busy_hosts() {
 }
 
 TEST(MessageStack, ABusyProcessorsFirstStepIsCold) {
-  MessageStack stack(busy_hosts(), kStackSeed, 0);
+  const scenarios::Hosts hosts = busy_hosts();
+  MessageStack stack(hosts, kStackSeed, 0);
   const TrueTime start{};
   EXPECT_EQ(us_of(stack.transmit(start, {1, 0})), 20);
   EXPECT_EQ(us_of(stack.transmit(start + from_ms(1), {1, 1})), 0) << "warm";
