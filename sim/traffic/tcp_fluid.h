@@ -32,6 +32,8 @@
 //    it overflows at a lower mean.
 //  - Acknowledgements wait where data do, and take 84 bytes on the line for two segments.
 //
+// Four constants (who loses, when a port overflows) are a fit to the packet reference.
+//
 // Left out: timeouts (a connection keeps two segments in flight, where real ones of few segments
 // pause for 200 ms while the others fill the queue as well), HyStart, pacing, and the bursts of
 // segmentation offload, which fill a port for some frames more or less.
