@@ -20,6 +20,13 @@ using processes::fill;
 using processes::HostPlaces;
 using scenarios::HostPrograms;
 
+// For its commands, environment and files alike.
+HostPlaces places_of(SimHost& host) {
+  return {.host = host.id(),
+          .follows = scenarios::followed_host(host.world().hosts, host.id()),
+          .drift = host.stored_frequency()};
+}
+
 // The programs of one host.
 class RunningPrograms {
  public:
@@ -29,7 +36,7 @@ class RunningPrograms {
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
              const std::string& folder) {
     const std::size_t number = processes_.size();
-    const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
+    const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
     Child::Settings child{
         .command = fill(command, places),
@@ -116,10 +123,7 @@ std::string ProgramSync::make_folder(SimHost& host) {
              fmt::format("seed{}", host.world().run_seed);
   }
   folder /= fmt::format("host{}", host.id());
-  return processes::make_folder(folder, settings_.programs,
-                                {.host = host.id(),
-                                 .follows = scenarios::followed_host(host.world().hosts, host.id()),
-                                 .drift = host.stored_frequency()});
+  return processes::make_folder(folder, settings_.programs, places_of(host));
 }
 
 void ProgramSync::fail(Host& host, const std::string& ending) {

@@ -68,7 +68,7 @@ class FrameBursts {
   Nanoseconds wait(std::size_t port, TrueTime at);
   // The share that the port cannot carry of what streams that are active then bring to it.
   double overload_share(std::size_t port, TrueTime at) const;
-  // The same of all streams, while they are active together.
+  // The share lost while all streams are active together.
   double overload_share(std::size_t port) const;
 
  private:

@@ -69,8 +69,8 @@ using ServeSlave = std::function<Task<void>(PeerId slave, std::shared_ptr<const 
 Task<void> serve_slaves(Host& host, std::vector<PeerId> slaves, StampSource stamps,
                         ServoSettings settings, ServeSlave serve);
 
-// The same on a host that follows another: the clock that stamps is steered by its slave's side,
-// which says when it is ready.
+// Serves slaves from a host that follows another: its slave's side steers the clock that stamps and
+// says when it is ready.
 Task<void> serve_slaves_of_relay(std::vector<PeerId> slaves, std::shared_ptr<const bool> is_ready,
                                  ServeSlave serve);
 
