@@ -25,9 +25,11 @@ const scenarios::RealRecording& measured_rig() {
                                               .source = "a data sheet"}}};
     all.settings.push_back({.name = "idle",
                             .scenario = "4host_chain",
+                            .set = {},
                             .pipeline = "chrony_hw",
                             .measured_us = {10, 20, 30},
-                            .factor = 2});
+                            .factor = 2,
+                            .used_for = {}});
     all.settings.push_back(all.settings.front());
     all.settings.back().name = "loaded";
     all.settings.back().used_for = "the mechanism";
