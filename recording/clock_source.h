@@ -25,6 +25,7 @@
 
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
+#include "recording/world_observer.h"
 
 namespace simbench {
 
@@ -48,6 +49,8 @@ class ClockSink {
   virtual void on_master(double /*error_s*/) {}
   // Every interval from true zero on: of each host, the first is the master with 0.
   virtual void on_errors(TrueTime at, std::span<const double> errors_s) = 0;
+  // As WorldObserver has it.
+  virtual void on_message(const ObservedMessage& /*message*/) {}
 };
 
 struct ClockCost {

@@ -61,9 +61,10 @@ struct ObservedMessage {
   std::uint64_t id = 0;  // counts up on each direction and transport of a link
   std::size_t bytes = 0;
   TrueTime left{};
-  TrueTime arrived{};  // of no meaning if lost
-  bool lost = false;   // or the stream is broken
-  bool copy = false;   // of a message to several hosts: another of its copies was sent before
+  TrueTime at_switch{};  // its last bit has come to the first switch of its way
+  TrueTime arrived{};    // of no meaning if lost
+  bool lost = false;     // or the stream is broken
+  bool copy = false;     // of a message to several hosts: another of its copies was sent before
 };
 
 class WorldObserver {

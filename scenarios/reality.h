@@ -19,19 +19,34 @@
 
 namespace simbench::scenarios {
 
-// Quantiles of the time errors of a host in a run: against true time, or against the master.
+// Of the time errors of a host in a run: against true time or, of a pair, against one host. Or of
+// the residence of the master's messages to that host in the switch, from last bit to last bit.
 enum class RealityQuantity : std::uint8_t {
   kMedianAbsTe,
   kP95AbsTe,
   kPairMedianAbsTe,
-  kPairP95AbsTe
+  kPairP95AbsTe,
+  kPairSdTe,
+  kResidenceMedian,
+  kResidenceMax
 };
 constexpr auto words_of(RealityQuantity) {
   using enum RealityQuantity;
   return std::to_array<Word<RealityQuantity>>({{kMedianAbsTe, "median_abs_te"},
                                                {kP95AbsTe, "p95_abs_te"},
                                                {kPairMedianAbsTe, "pair_median_abs_te"},
-                                               {kPairP95AbsTe, "pair_p95_abs_te"}});
+                                               {kPairP95AbsTe, "pair_p95_abs_te"},
+                                               {kPairSdTe, "pair_sd_te"},
+                                               {kResidenceMedian, "residence_median"},
+                                               {kResidenceMax, "residence_max"}});
+}
+
+// What loads hosts or network in a setting.
+enum class RealityLoad : std::uint8_t { kNone, kTcp, kPaced, kRandom, kCpu };
+constexpr auto words_of(RealityLoad) {
+  using enum RealityLoad;
+  return std::to_array<Word<RealityLoad>>(
+      {{kNone, "none"}, {kTcp, "tcp"}, {kPaced, "paced"}, {kRandom, "random"}, {kCpu, "cpu"}});
 }
 
 struct RealitySetting {
@@ -43,7 +58,10 @@ struct RealitySetting {
   RealityQuantity quantity = RealityQuantity::kMedianAbsTe;
   std::vector<double> measured_us;  // of each stretch or device
   double factor = 0;                // within which the prediction is to lie
-  std::string used_for;             // what was chosen knowing it; empty: it counts
+  RealityLoad load = RealityLoad::kNone;
+  // Predicted by measured, as `simbench reality` printed it when the file was written.
+  double recorded_ratio = 0;
+  std::string used_for;  // what was chosen knowing it; empty: it counts
 };
 
 // A parameter that the publication does not give.
@@ -63,11 +81,18 @@ struct RealRecording {
   std::uint64_t duration_s = 0;
   std::uint64_t from_s = 0;
   std::uint64_t seeds = 0;
+  std::size_t pairs_with = 0;  // the host that pairs are compared with
   std::vector<RealitySetting> settings;
   std::vector<UnknownParameter> unknown;
 };
 
 // In alphabetical order.
 const std::vector<RealRecording>& real_recordings();
+
+// How far the bench was off beside real rigs under each kind of load that the scenario has, a
+// sentence each: "within a factor of 1.2 of real rigs under saturating TCP (chrony_chain; ...)", by
+// the recorded ratios of hosts that are no more hops from their master than the scenario's are.
+// None without load.
+std::vector<std::string> load_reality(const Scenario& scenario);
 
 }  // namespace simbench::scenarios

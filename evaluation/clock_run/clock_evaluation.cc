@@ -15,6 +15,7 @@
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/loader.h"
+#include "scenarios/reality.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -68,7 +69,8 @@ Chosen choose_clock_runs(const Scenario& scenario, const std::vector<std::string
 ClockSpan span_of(const Scenario& scenario, const ClockOptions& options) {
   return {.duration = std::chrono::seconds(options.duration_s),
           .from = std::chrono::seconds(options.from_s),
-          .hosts = static_cast<std::size_t>(scenario.hosts.count)};
+          .hosts = static_cast<std::size_t>(scenario.hosts.count),
+          .pairs_with = options.pairs_with};
 }
 
 HostTe median_te_of(const std::vector<HostTe>& seeds) {
@@ -80,7 +82,8 @@ HostTe median_te_of(const std::vector<HostTe>& seeds) {
   };
   return {.median_ms = median_te(&HostTe::median_ms),
           .median_abs_ms = median_te(&HostTe::median_abs_ms),
-          .p95_abs_ms = median_te(&HostTe::p95_abs_ms)};
+          .p95_abs_ms = median_te(&HostTe::p95_abs_ms),
+          .sd_ms = median_te(&HostTe::sd_ms)};
 }
 
 class ClockEvaluation {
@@ -160,7 +163,7 @@ class ClockEvaluation {
                         .trace_hash = cost.trace_hash,
                         .notes = host_sync->notes()};
     scored.curves = std::move(score.curves);
-    scored.hosts = {.to_truth = std::move(score.to_truth), .to_master = std::move(score.to_master)};
+    scored.hosts = {.to_truth = std::move(score.to_truth), .pairs = std::move(score.pairs)};
     if (seed == options_.first_seed) scored.readings = std::move(score.readings);
     return scored;
   }
@@ -177,6 +180,7 @@ class ClockEvaluation {
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.warnings = chosen_.left_out;
+    results.load_reality = scenarios::load_reality(scenario_);
     all.follows = scenario_.hosts.follows;
     RowSetting setting = row_setting(scenario_);
     setting.kind = ResultKind::kClockRuns;
@@ -215,7 +219,7 @@ class ClockEvaluation {
 
 HostTimeErrors host_medians(const std::vector<HostTimeErrors>& seeds) {
   HostTimeErrors medians;
-  for (const auto list : {&HostTimeErrors::to_truth, &HostTimeErrors::to_master}) {
+  for (const auto list : {&HostTimeErrors::to_truth, &HostTimeErrors::pairs}) {
     for (std::size_t host = 0; host < (seeds.front().*list).size(); ++host) {
       std::vector<HostTe> of_host;
       of_host.reserve(seeds.size());

@@ -45,13 +45,14 @@ struct ClockOptions {
   std::uint64_t seeds = 8;
   unsigned jobs = 0;
   std::vector<std::string> pipelines{};
+  std::size_t pairs_with = 0;  // the host that HostTimeErrors::pairs are compared with
   const std::atomic<bool>* cancel = nullptr;
 };
 
 // By host, the master's first.
 struct HostTimeErrors {
   std::vector<HostTe> to_truth{};
-  std::vector<HostTe> to_master{};
+  std::vector<HostTe> pairs{};
 };
 
 struct ClockResults {

@@ -74,7 +74,8 @@ double spread_of(std::span<const double> errors_s) {
 // The errors are of one clock, in seconds.
 HostTe te_of(std::vector<double> errors_s) {
   std::ranges::sort(errors_s);
-  HostTe te{.median_ms = 1e3 * quantile_of_sorted(errors_s, 0.5)};
+  HostTe te{.median_ms = 1e3 * quantile_of_sorted(errors_s, 0.5),
+            .sd_ms = 1e3 * standard_deviation(errors_s)};
   for (double& error_s : errors_s) error_s = std::abs(error_s);
   std::ranges::sort(errors_s);
   te.median_abs_ms = 1e3 * quantile_of_sorted(errors_s, 0.5);
@@ -180,8 +181,11 @@ ClockScore ClockScorer::finish(std::uint64_t messages) {
   values.holdover_600_ms = holdover_600_ms_;
   if (last_apart_ && *last_apart_ <= kRecovery) values.recovery_s = exact_seconds(*last_apart_);
   values.packets_per_s = static_cast<double>(messages) / exact_seconds(span_.duration);
+  const std::vector<double>& reference_s = kept_.errors_s.at(span_.pairs_with);
   for (std::vector<double> errors_s : kept_.errors_s) {
-    score.to_master.push_back(te_of(errors_s));
+    std::vector<double> pair_s = errors_s;
+    for (std::size_t i = 0; i < pair_s.size(); ++i) pair_s[i] -= reference_s[i];
+    score.pairs.push_back(te_of(std::move(pair_s)));
     for (std::size_t i = 0; i < errors_s.size(); ++i) errors_s[i] += master_s_[i];
     score.to_truth.push_back(te_of(std::move(errors_s)));
   }

@@ -9,8 +9,8 @@
 //   spread      largest minus smallest clock of all hosts, the master included
 //   holdover    largest |TE| of any slave 60 s and 600 s after the loss
 //   recovery    from the master's return until the spread stays within its largest while measured
-//   HostTe      quantiles in time of a host's error, against true time and against the master's
-//               clock
+//   HostTe      quantiles in time of a host's error, against true time and against the clock of
+//               another host, the master's unless the span says otherwise
 //
 // A value that does not exist (never below, never recovered) is NaN. Deviations are the RMS over
 // the slaves, MTIE is the largest of any slave.
@@ -47,6 +47,7 @@ struct ClockSpan {
   Nanoseconds duration{};
   Nanoseconds from{};
   std::size_t hosts = 0;
+  std::size_t pairs_with = 0;  // whose clock the pairs are compared with
 };
 
 // The curves of several clocks as one: deviations are the RMS over those that have the tau, MTIE
@@ -65,14 +66,15 @@ struct HostTe {
   double median_ms = kNan;  // signed
   double median_abs_ms = kNan;
   double p95_abs_ms = kNan;
+  double sd_ms = kNan;  // about its mean
 };
 
 struct ClockScore {
   MetricValues<double> values{};
   std::vector<double> host_errors_ms{};  // mean TE while measured, by host
-  // By host, the master's first: against true time, and against the master.
+  // By host, the master's first: against true time, and against `pairs_with`.
   std::vector<HostTe> to_truth{};
-  std::vector<HostTe> to_master{};
+  std::vector<HostTe> pairs{};
   StabilityCurves curves{};
   ClockReadings readings{};
 };

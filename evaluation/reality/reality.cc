@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "scenarios/loader.h"
@@ -39,12 +41,86 @@ std::vector<World> worlds_of(const RealRecording& recording) {
   return worlds;
 }
 
-double value_us(const RealitySetting& setting, const HostTimeErrors& errors) {
-  using enum scenarios::RealityQuantity;
-  const bool is_pair = setting.quantity == kPairMedianAbsTe || setting.quantity == kPairP95AbsTe;
-  const bool is_median = setting.quantity == kMedianAbsTe || setting.quantity == kPairMedianAbsTe;
-  const HostTe& host = (is_pair ? errors.to_master : errors.to_truth).at(setting.host);
-  return 1e3 * (is_median ? host.median_abs_ms : host.p95_abs_ms);
+// Residences in the switch of the master's messages, by receiver.
+using Residences = std::map<std::size_t, std::vector<double>>;
+using ResidencesOfRuns = std::map<std::pair<std::string, std::uint64_t>, Residences>;
+
+// Passes all on, and keeps the residences.
+class ResidenceTap final : public ClockSink {
+ public:
+  explicit ResidenceTap(ClockSink& sink) : sink_(sink) {}
+
+  void on_master(double error_s) override { sink_.on_master(error_s); }
+  void on_errors(TrueTime at, std::span<const double> errors_s) override {
+    sink_.on_errors(at, errors_s);
+  }
+  void on_message(const ObservedMessage& message) override {
+    sink_.on_message(message);
+    if (message.from != 0 || message.lost) return;
+    us[message.to].push_back(to_ns(message.arrived - message.at_switch) * 1e-3);
+  }
+
+  Residences us;
+
+ private:
+  ClockSink& sink_;
+};
+
+// A source of clocks at whose switch a tap stands.
+class TappedClocks final : public ClockSource {
+ public:
+  TappedClocks(std::unique_ptr<ClockSource> clocks, ResidencesOfRuns& runs, std::mutex& mutex)
+      : clocks_(std::move(clocks)), runs_(runs), mutex_(mutex) {}
+
+  ClockCost run(const ClockRequest& request, ClockSink& sink) override {
+    ResidenceTap tap(sink);
+    const ClockCost cost = clocks_->run(request, tap);
+    const std::lock_guard lock(mutex_);
+    runs_[{request.pipeline, request.seed}] = std::move(tap.us);
+    return cost;
+  }
+
+ private:
+  std::unique_ptr<ClockSource> clocks_;
+  ResidencesOfRuns& runs_;
+  std::mutex& mutex_;  // guards runs_
+};
+
+struct SeedFigures {
+  HostTimeErrors errors;
+  Residences residences_us;
+};
+
+double value_us(const RealitySetting& setting, const SeedFigures& seed) {
+  const auto truth = [&] { return seed.errors.to_truth.at(setting.host); };
+  const auto pair = [&] { return seed.errors.pairs.at(setting.host); };
+  const auto residences = [&] { return seed.residences_us.at(setting.host); };
+  switch (setting.quantity) {
+    using enum scenarios::RealityQuantity;
+    case kMedianAbsTe:
+      return 1e3 * truth().median_abs_ms;
+    case kP95AbsTe:
+      return 1e3 * truth().p95_abs_ms;
+    case kPairMedianAbsTe:
+      return 1e3 * pair().median_abs_ms;
+    case kPairP95AbsTe:
+      return 1e3 * pair().p95_abs_ms;
+    case kPairSdTe:
+      return 1e3 * pair().sd_ms;
+    case kResidenceMedian:
+      return median(residences());
+    case kResidenceMax:
+      return std::ranges::max(residences());
+  }
+  return kNan;
+}
+
+bool needs_residences(const World& world, const RealRecording& recording) {
+  return std::ranges::any_of(world.settings, [&](std::size_t i) {
+    const scenarios::RealityQuantity quantity = recording.settings[i].quantity;
+    return quantity == scenarios::RealityQuantity::kResidenceMedian ||
+           quantity == scenarios::RealityQuantity::kResidenceMax;
+  });
 }
 
 class RealityComparison {
@@ -104,16 +180,34 @@ class RealityComparison {
                      .seeds = options_.seeds > 0 ? options_.seeds : recording_.seeds,
                      .jobs = options_.jobs,
                      .pipelines = {},
+                     .pairs_with = recording_.pairs_with,
                      .cancel = options_.cancel};
     for (const std::size_t i : world.settings) {
       const std::string& pipeline = recording_.settings[i].pipeline;
       if (std::ranges::count(run.pipelines, pipeline) == 0) run.pipelines.push_back(pipeline);
     }
     pipelines_ = run.pipelines;
-    ClockResults results = evaluate_clocks(
-        scenario, [&] { return make_world_(scenario); }, run, nullptr);
+    keep_figures(scenario, run, needs_residences(world, recording_));
     if (progress_) progress_(++done_, all_);
-    seeds_ = std::move(results.hosts);
+  }
+
+  void keep_figures(const scenarios::Scenario& scenario, const ClockOptions& run, bool is_tapped) {
+    ResidencesOfRuns residences;
+    std::mutex mutex;
+    const auto make_source = [&]() -> std::unique_ptr<ClockSource> {
+      std::unique_ptr<ClockSource> clocks = make_world_(scenario);
+      if (!is_tapped) return clocks;
+      return std::make_unique<TappedClocks>(std::move(clocks), residences, mutex);
+    };
+    ClockResults results = evaluate_clocks(scenario, make_source, run, nullptr);
+    seeds_.clear();
+    for (std::size_t row = 0; row < run.pipelines.size(); ++row) {
+      std::vector<SeedFigures>& of_row = seeds_.emplace_back();
+      for (std::size_t i = 0; i < results.hosts[row].size(); ++i) {
+        of_row.push_back({std::move(results.hosts[row][i]),
+                          std::move(residences[{run.pipelines[row], run.first_seed + i}])});
+      }
+    }
   }
 
   // The values of a setting by seed, in the last runs.
@@ -121,7 +215,7 @@ class RealityComparison {
     const auto row = static_cast<std::size_t>(std::ranges::find(pipelines_, setting.pipeline) -
                                               pipelines_.begin());
     std::vector<double> values;
-    for (const HostTimeErrors& seed : seeds_.at(row)) values.push_back(value_us(setting, seed));
+    for (const SeedFigures& seed : seeds_.at(row)) values.push_back(value_us(setting, seed));
     return values;
   }
 
@@ -148,8 +242,8 @@ class RealityComparison {
   const Progress& progress_;
   std::vector<World> worlds_;
   std::vector<RealityRow> rows_;
-  std::vector<std::string> pipelines_;              // of the last runs
-  std::vector<std::vector<HostTimeErrors>> seeds_;  // of the last runs: by row, by seed
+  std::vector<std::string> pipelines_;           // of the last runs
+  std::vector<std::vector<SeedFigures>> seeds_;  // of the last runs: by row, by seed
   std::size_t done_ = 0;
   std::size_t all_ = 0;
 };

@@ -16,6 +16,7 @@
 #include "evaluation/scoring/rows.h"
 #include "recording/counted.h"
 #include "scenarios/loader.h"
+#include "scenarios/reality.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -103,6 +104,7 @@ class EvaluationRun {
     results.scenario = scenario_.name;
     results.ranked_by = ranked_by(scenario_.evaluation.table);
     results.loss_reasons = loss_reasons(scenario_);
+    results.load_reality = scenarios::load_reality(scenario_);
     results.derivation = scenario_.derivation;
     results.draws_load = scenario_.draws_load();
     results.first_seed = options_.first_seed;

@@ -136,6 +136,7 @@ struct Results {
   std::optional<AsymmetryFloor> asymmetry_floor;  // if the scenario's links are asymmetric
   std::vector<std::string> warnings;
   std::vector<std::string> loss_reasons{};  // why pulses are lost: scenarios::loss_reasons()
+  std::vector<std::string> load_reality{};  // scenarios::load_reality()
   Performance performance;
 };
 

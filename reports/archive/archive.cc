@@ -149,6 +149,12 @@ constexpr const char* kAdvice =
     "--format json > FILE` "
     "a result without one";
 
+std::vector<std::string> read_lines(const JsonNode& list) {
+  std::vector<std::string> lines;
+  for (const JsonNode& line : list.elements()) lines.push_back(line.text());
+  return lines;
+}
+
 evaluation::Percentile percentile(const JsonNode& published, const char* name) {
   const JsonNode interval = published[fmt::format("{}_interval", name).c_str()];
   const std::vector<JsonNode> ends = interval.elements();
@@ -307,14 +313,9 @@ evaluation::Results read_results(const JsonNode& root) {
   }
   results.ranked_by = read_ranked_by(root, results);
   if (!is_of_clocks) read_paper_part(root, results);
-  for (const JsonNode& warning : root["warnings"].elements()) {
-    results.warnings.push_back(warning.text());
-  }
-  if (root.has(kLossReasonsMember)) {
-    for (const JsonNode& reason : root[kLossReasonsMember].elements()) {
-      results.loss_reasons.push_back(reason.text());
-    }
-  }
+  results.warnings = read_lines(root["warnings"]);
+  if (root.has(kLossReasonsMember)) results.loss_reasons = read_lines(root[kLossReasonsMember]);
+  if (root.has(kLoadRealityMember)) results.load_reality = read_lines(root[kLoadRealityMember]);
   const JsonNode cost = root["performance"];
   results.performance = {
       .events = static_cast<std::uint64_t>(cost["events"].count()),

@@ -148,6 +148,7 @@ AnswerText clock_answer(const evaluation::Results& results, const Answer& answer
   text.add("In sync?", in_sync_sentence(*answer.best));
   text.add("Causes", causes_text(causes));
   if (causes.tried.empty()) text.add("Error", kind_of_error_sentence(*answer.best));
+  text.add("Load", load_text(results));
   text.add("Holdover", without_master_sentence(*answer.best));
   text.add("Cost", fmt::format("It sends {} packets per second.",
                                number_text(answer.best->packets_per_s.median)));

@@ -169,7 +169,8 @@ Json host_errors_json(const std::vector<evaluation::HostTe>& hosts, std::size_t 
     all.push_back({{"host", host},
                    {"median_te_ms", hosts[host].median_ms},
                    {"median_abs_te_ms", hosts[host].median_abs_ms},
-                   {"p95_abs_te_ms", hosts[host].p95_abs_ms}});
+                   {"p95_abs_te_ms", hosts[host].p95_abs_ms},
+                   {"sd_te_ms", hosts[host].sd_ms}});
   }
   return all;
 }
@@ -237,13 +238,14 @@ std::string clock_json(const ClockResults& results) {
                {"from_s", of.clock_period.from_s},
                {"interval_s", to_seconds(evaluation::kReadingInterval)},
                {"rows", Json::array()},
-               {"warnings", of.warnings}});
+               {"warnings", of.warnings},
+               {kLoadRealityMember, of.load_reality}});
   for (std::size_t row = 0; row < of.rows.size(); ++row) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
     if (results.hosts.empty()) continue;  // of an archive, which does not keep them
     const evaluation::HostTimeErrors hosts = evaluation::host_medians(results.hosts[row]);
     root["rows"].back()["hosts"] = host_errors_json(hosts.to_truth, 0);
-    root["rows"].back()["pairs"] = host_errors_json(hosts.to_master, 1);
+    root["rows"].back()["pairs"] = host_errors_json(hosts.pairs, 1);
   }
   const evaluation::Answer answer = evaluation::answer_of(of);
   root["answer"] = answer_with_fields(answer, clock_answer(of, answer, results.causes), nullptr);

@@ -16,12 +16,14 @@
 //              "below_ms": {"1", "0.1", "0.01"}: seconds until the spread stays below, the median
 //                over the seeds; null if half of them never do,
 //              "holdover_ms": {"60", "600"}, "recovery_s", "packets_per_s": median over the seeds,
-//              "hosts": [{"host", "median_te_ms": signed, "median_abs_te_ms", "p95_abs_te_ms"}],
+//              "hosts": [{"host", "median_te_ms": signed, "median_abs_te_ms", "p95_abs_te_ms",
+//                "sd_te_ms": standard deviation}],
 //                quantiles in time of each host's error against true time, medians over the seeds,
 //              "pairs": [likewise, of each slave against the master],
 //              "metrics": {each metric of a clock run by its id: {"median", "p05", "p95",
 //                "values": [in seed order]}}}],
-//    "warnings", "answer" (reports/results/answer_fields.h), "performance"}
+//    "warnings", "load_reality" (reports/results/json.h), "answer"
+//    (reports/results/answer_fields.h), "performance"}
 //
 // What it means: evaluation/clock_run/clock_score.h, evaluation/stability/stability.h.
 #pragma once

@@ -170,7 +170,8 @@ std::string json(const evaluation::Results& results, const ResultsAnswer& answer
                {"claims", Json::array()},
                {"asymmetry_floor", floor_json(results.asymmetry_floor)},
                {"warnings", results.warnings},
-               {kLossReasonsMember, results.loss_reasons}});
+               {kLossReasonsMember, results.loss_reasons},
+               {kLoadRealityMember, results.load_reality}});
   for (const evaluation::Row& row : results.rows) {
     root["rows"].push_back(row_json(row, ranked_by));
   }

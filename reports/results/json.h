@@ -34,6 +34,7 @@
 //    "asymmetry_floor": null or {"sigma_ms", "host_error_ms", "amd_ms"}
 //      (evaluation/scoring/asymmetry_floor.h), "warnings": [...],
 //    "loss_reasons": [what makes pulses be lost in this world],
+//    "load_reality": [how far the bench was off beside real rigs under such load],
 //    "performance": {"events", "events_per_second", "simulated_seconds_per_second", ...}}
 #pragma once
 
@@ -52,6 +53,7 @@ namespace simbench::reports {
 inline constexpr int kArchiveSchemaVersion = 1;
 inline constexpr const char* kRankedByMember = "ranked_by";
 inline constexpr const char* kLossReasonsMember = "loss_reasons";
+inline constexpr const char* kLoadRealityMember = "load_reality";  // of clock runs too
 inline constexpr const char* kOwnLoadMember = "own_load_of_pipelines";
 
 // Whether a value at this percentile is inside; null with too few seeds to tell.

@@ -248,6 +248,12 @@ std::string distance_text(const Results& results, const Answer& answer) {
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
+std::string load_text(const Results& results) {
+  if (results.load_reality.empty()) return "";
+  return capitalised(
+      fmt::format("{}. See `simbench reality`.", fmt::join(results.load_reality, "; ")));
+}
+
 std::string uncertainty_text(const Answer& answer) {
   const Row& best = *answer.best;
   std::vector<std::string> parts;
@@ -336,6 +342,7 @@ ResultsAnswer results_answer(const Results& results, std::optional<Levers> lever
                              const std::vector<std::string>& warnings) {
   ResultsAnswer answer{.data = evaluation::answer_of(results), .levers = std::move(levers)};
   answer.text = words_of(results, answer.data, answer.levers ? &*answer.levers : nullptr);
+  answer.text.add("Load", load_text(results));
   answer.text.add("Warnings", warnings_text(results, answer, warnings));
   return answer;
 }

@@ -42,6 +42,8 @@ std::string certainty_clause(const evaluation::Answer& answer);
 std::string distance_text(const evaluation::Results& results, const evaluation::Answer& answer);
 // Which pipelines failed, and why; "" if none did.
 std::string failed_text(const evaluation::Answer& answer);
+// How far the bench was off beside real rigs under such load; "" without load.
+std::string load_text(const evaluation::Results& results);
 // What these seeds leave open; "" if that is little.
 std::string uncertainty_text(const evaluation::Answer& answer);
 

@@ -126,7 +126,8 @@ HostDeparture SimNetwork::leave_host(PeerId from, bool passes_a_port, Nanosecond
   const TrueTime now = engine_.now();
   const HostWait wait = traffic_ == nullptr ? HostWait{} : traffic_->at_host(from, now);
   const TrueTime stamped = now + wait.in_queue;
-  const TrueTime at_card = stamped + to_card + wait.in_ring;
+  // What is before it in the ring leaves while it is on its way to the card.
+  const TrueTime at_card = stamped + std::max(to_card, wait.in_ring);
   return {
       .stamped = stamped,
       .passed = passes_a_port ? host_ports_[from].pass(at_card, on_the_line(segment)) : at_card};
@@ -485,6 +486,7 @@ void SimNetwork::report(const Segment& segment, std::optional<TrueTime> arrival)
                            .id = id++,
                            .bytes = message.size(),
                            .left = segment.left,
+                           .at_switch = segment.at_switch,
                            .arrived = arrival.value_or(TrueTime{}),
                            .lost = !arrival,
                            .copy = !segment.is_counted});

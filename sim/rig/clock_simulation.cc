@@ -24,10 +24,10 @@ class NoRecording final : public RecordingSink {
   void on_event(const RecordingEvent&) override {}
 };
 
-// Counts the messages that leave before `end`.
+// Counts the messages that leave before `end`, and passes all on.
 class MessageCount final : public WorldObserver {
  public:
-  explicit MessageCount(TrueTime end) : end_(end) {}
+  MessageCount(TrueTime end, ClockSink& sink) : end_(end), sink_(sink) {}
   std::uint64_t count() const { return count_; }
 
   void on_world(TrueTime) override {}
@@ -36,11 +36,13 @@ class MessageCount final : public WorldObserver {
   void on_frame(const ObservedFrame&) override {}
   void on_message(const ObservedMessage& message) override {
     count_ += !message.copy && message.left < end_;
+    sink_.on_message(message);
   }
   void on_clocks(TrueTime, std::span<const Nanoseconds>) override {}
 
  private:
   TrueTime end_;
+  ClockSink& sink_;
   std::uint64_t count_ = 0;
 };
 
@@ -62,7 +64,7 @@ class ClockRun {
       : scenario_(world_of(scenario, request)),
         request_(request),
         sink_(sink),
-        messages_(TrueTime{} + request.duration),
+        messages_(TrueTime{} + request.duration, sink),
         engine_({.cancel = request.cancel}),
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario_, request.seed, request.pipeline + "@" + scenario_.name,

@@ -13,6 +13,11 @@
 namespace simbench::scenarios {
 namespace {
 
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
 TEST(Reality, EveryFileIsWhatTheSchemaSays) {
   const JsonSchema schema(nlohmann::json::parse(recording_schema_text()));
   for (const BuiltinFile& file : nonempty(recording_files())) {
@@ -50,6 +55,21 @@ TEST(Reality, EveryUnknownParameterIsAPlaceOfOneOfTheScenarios) {
       EXPECT_TRUE(is_known) << recording.name << ": " << unknown.pointer;
     }
   }
+}
+
+TEST(Reality, ALoadedScenarioSaysHowFarOffTheBenchWas) {
+  EXPECT_TRUE(load_reality(load_scenario("4host_chain_idle")).empty());
+  EXPECT_THAT(load_reality(load_scenario("4host_chain_tcp")),
+              ElementsAre(AllOf(StartsWith("within a factor of 1.2 (1 hop), "),
+                                HasSubstr("(3 hops) of real rigs under saturating TCP "
+                                          "(chrony_chain; figures that were known"))));
+  const Override traffic{.pointer = "/network/traffic",
+                         .value = R"([{"kind": "tcp", "from": 0, "to": 1},
+                                      {"kind": "random", "from": 0, "to": 1, "mbit_per_s": 100}])"};
+  EXPECT_THAT(load_reality(load_scenario("6host_star",
+                                         {traffic, {"/network/bandwidth_mbit_per_s", "1000"}})),
+              ElementsAre(StartsWith("within a factor of 1.2 of real rigs under saturating TCP"),
+                          "no real rig was measured under random traffic"));
 }
 
 }  // namespace

@@ -43,6 +43,24 @@ MetricValues<double> clock_values_of_spread(std::int64_t last_s,
   });
 }
 
+// Host 1 is 1, 2, 3, 4 ms off the master and the master 10 ms off the truth; host 2 is 1 ms off.
+TEST(ClockScorer, AHostsErrorsAreAgainstTheTruthAndAgainstOneHost) {
+  ClockScorer scorer({.duration = seconds(4), .from = seconds(1), .hosts = 3, .pairs_with = 2});
+  for (int second = 0; second <= 4; ++second) {
+    scorer.on_master(10e-3);
+    scorer.on_errors(TrueTime(seconds(second)), std::vector<double>{0, second * 1e-3, 1e-3});
+  }
+  const ClockScore score = scorer.finish(0);
+  ASSERT_EQ(score.to_truth.size(), 3U);
+  EXPECT_NEAR(score.to_truth[1].median_ms, 12.5, 1e-9);
+  EXPECT_NEAR(score.to_truth[1].sd_ms, std::sqrt(5.0 / 3), 1e-9) << "of a sample of four";
+  EXPECT_NEAR(score.pairs[1].median_ms, 1.5, 1e-9);
+  EXPECT_NEAR(score.pairs[0].median_ms, -1, 1e-9);
+  EXPECT_NEAR(score.pairs[0].median_abs_ms, 1, 1e-9);
+  EXPECT_EQ(score.pairs[2].p95_abs_ms, 0);
+  EXPECT_EQ(score.pairs[2].sd_ms, 0);
+}
+
 TEST(ClockScorer, TheSpreadIsOfAllHostsOverTheSpanMeasured) {
   ClockScorer scorer({.duration = seconds(10), .from = seconds(4), .hosts = 3});
   read_out(scorer, 12, [](std::int64_t second) {

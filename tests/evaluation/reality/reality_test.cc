@@ -10,13 +10,19 @@ namespace simbench::evaluation {
 namespace {
 
 // A world whose slaves stand still: host h is 10 us times h times the seed off the master, which is
-// 5 us off the truth; twice that if the scenario has another buffer.
+// 5 us off the truth; twice that if the scenario has another buffer. Four messages stay 4, 5, 9 and
+// 100 us in the switch; the last is not for host 1, and one is lost.
 class StandingClocks final : public ClockSource {
  public:
   explicit StandingClocks(double scale) : scale_(scale) {}
   ClockCost run(const ClockRequest& request, ClockSink& sink) override {
     const double unit_s = 10e-6 * scale_ * static_cast<double>(request.seed);
     const std::vector<double> errors_s = {0, unit_s, 2 * unit_s, 3 * unit_s};
+    message(sink, 1, 4);
+    message(sink, 1, 9);
+    message(sink, 1, 5);
+    message(sink, 2, 100);
+    sink.on_message({.from = 0, .to = 1, .lost = true});
     const Nanoseconds end = request.duration + request.master_lost_for + request.recovery;
     for (Nanoseconds at{}; at <= end; at += request.interval) {
       sink.on_master(5e-6);
@@ -26,6 +32,13 @@ class StandingClocks final : public ClockSource {
   }
 
  private:
+  static void message(ClockSink& sink, std::uint32_t to, double residence_us) {
+    sink.on_message({.from = 0,
+                     .to = to,
+                     .at_switch = TrueTime{} + from_us(7),
+                     .arrived = TrueTime{} + from_us(7 + residence_us)});
+  }
+
   double scale_;
 };
 
@@ -93,6 +106,26 @@ TEST(Reality, UnknownParametersSpanPredictions) {
   ASSERT_EQ(rows[0].spans.size(), 1U) << "a member that the scenario does not have spans nothing";
   EXPECT_EQ(rows[0].spans[0].parameter, &measured.unknown[0]);
   EXPECT_NEAR(rows[0].spans[0].predicted_us, 40, 1e-9);
+}
+
+TEST(Reality, APairMayBeOfTwoSlaves) {
+  scenarios::RealRecording measured = recording();
+  measured.pairs_with = 2;
+  measured.settings[0].host = 3;
+  measured.settings[1].quantity = scenarios::RealityQuantity::kPairSdTe;
+  const std::vector<RealityRow> rows = compared(measured, false);
+  EXPECT_NEAR(rows[0].median_us(), 20, 1e-9) << "three units and two: one apart";
+  EXPECT_NEAR(rows[1].median_us(), 0, 1e-9) << "standing clocks";
+}
+
+TEST(Reality, ResidencesAreThoseOfTheMastersMessages) {
+  scenarios::RealRecording measured = recording();
+  measured.settings[0].quantity = scenarios::RealityQuantity::kResidenceMedian;
+  measured.settings[1].quantity = scenarios::RealityQuantity::kResidenceMax;
+  measured.settings[1].host = 1;
+  const std::vector<RealityRow> rows = compared(measured, false);
+  EXPECT_NEAR(rows[0].median_us(), 5, 1e-9);
+  EXPECT_NEAR(rows[1].median_us(), 9, 1e-9);
 }
 
 TEST(Reality, AFigureThatWasKnownDoesNotCount) {

@@ -18,6 +18,7 @@ namespace {
 
 using ClockJson = nlohmann::ordered_json;
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -31,10 +32,10 @@ std::vector<std::string> members_of(const ClockJson& object) {
 
 TEST(ClockJson, SaysWhatItIs) {
   const ClockJson root = ClockJson::parse(clock_json(sample_clock_results()));
-  EXPECT_THAT(
-      members_of(root),
-      ElementsAre("schema_version", "kind", "version", "commit", "scenario", "seeds", "duration_s",
-                  "from_s", "interval_s", "rows", "warnings", "answer", "performance"));
+  EXPECT_THAT(members_of(root),
+              ElementsAre("schema_version", "kind", "version", "commit", "scenario", "seeds",
+                          "duration_s", "from_s", "interval_s", "rows", "warnings", "load_reality",
+                          "answer", "performance"));
   EXPECT_EQ(root["kind"], "clocks");
   EXPECT_EQ(root["scenario"], "6host_star");
   EXPECT_EQ(root["seeds"], ClockJson::parse(R"({"first": 4, "count": 3})"));
@@ -43,6 +44,18 @@ TEST(ClockJson, SaysWhatItIs) {
   EXPECT_EQ(root["interval_s"], 1.0);
   EXPECT_EQ(root["warnings"], ClockJson::parse(R"(["one was left out"])"));
   EXPECT_EQ(root["rows"].size(), 2U);
+}
+
+TEST(ClockJson, UnderLoadTheAnswerSaysHowFarOffTheBenchWas) {
+  evaluation::ClockResults loaded = sample_clock_results();
+  loaded.results.load_reality = {"within a factor of 2 of real rigs", "no real rig was measured"};
+  const ClockJson root = ClockJson::parse(clock_json(loaded));
+  EXPECT_EQ(root["load_reality"], ClockJson(loaded.results.load_reality));
+  EXPECT_THAT(root["answer"]["lines"],
+              Contains(ClockJson{{"label", "Load"},
+                                 {"text",
+                                  "Within a factor of 2 of real rigs; no real rig was "
+                                  "measured. See `simbench reality`."}}));
 }
 
 TEST(ClockJson, ARowHasTheMembersThatAreStated) {
