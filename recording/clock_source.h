@@ -23,6 +23,7 @@
 #include <span>
 #include <string>
 
+#include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
 #include "recording/world_observer.h"
@@ -49,6 +50,8 @@ class ClockSink {
   virtual void on_master(double /*error_s*/) {}
   // Every interval from true zero on: of each host, the first is the master with 0.
   virtual void on_errors(TrueTime at, std::span<const double> errors_s) = 0;
+  // How the synchronisation ended on a slave; of those that come to it late, twice.
+  virtual void on_outcome(const SyncOutcome& /*outcome*/) {}
   // As WorldObserver has it.
   virtual void on_message(const ObservedMessage& /*message*/) {}
 };

@@ -19,8 +19,9 @@
 
 namespace simbench::scenarios {
 
-// Of the time errors of a host in a run: against true time or, of a pair, against one host. Or of
-// the residence of the master's messages to that host in the switch, from last bit to last bit.
+// What is compared: quantiles of the time errors of a host in a run, against true time or, of a
+// pair, against one host; or the residence of the master's messages to that host in the switch,
+// from last bit to last bit.
 enum class RealityQuantity : std::uint8_t {
   kMedianAbsTe,
   kP95AbsTe,

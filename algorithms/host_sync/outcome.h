@@ -1,5 +1,5 @@
-// Reports how the synchronisation of a slave ended, as seen by the slave: only the first outcome is
-// reported.
+// Reports how the synchronisation of a slave ended, as seen by the slave: its first outcome, and
+// that it came to its master all the same after a failure.
 //
 //   OutcomeReport outcome(host);
 //   outcome.failed(8, "no reply from the master; is it running?");  // "slave 3: no reply from ..."
@@ -26,14 +26,16 @@ class OutcomeReport {
 
  private:
   void report(std::uint32_t passes, bool synchronised, const std::string& message) {
-    if (is_reported_) return;
+    if (is_reported_ && (is_synchronised_ || !synchronised)) return;
     is_reported_ = true;
+    is_synchronised_ = synchronised;
     host_.report_outcome(
         {.slave = host_.id(), .synchronised = synchronised, .passes = passes, .message = message});
   }
 
   Host& host_;
   bool is_reported_ = false;
+  bool is_synchronised_ = false;
 };
 
 }  // namespace simbench

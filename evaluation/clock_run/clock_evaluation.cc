@@ -158,6 +158,7 @@ class ClockEvaluation {
     static_cast<MetricValues<double>&>(scored.seed) = score.values;
     scored.seed.seed = seed;
     scored.seed.host_errors_ms = std::move(score.host_errors_ms);
+    scored.seed.failures = std::move(score.failures);
     scored.seed.cost = {.events = cost.events,
                         .simulated_seconds = to_seconds(span.duration + kMasterLostFor + kRecovery),
                         .trace_hash = cost.trace_hash,

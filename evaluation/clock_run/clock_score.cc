@@ -189,6 +189,7 @@ ClockScore ClockScorer::finish(std::uint64_t messages) {
     for (std::size_t i = 0; i < errors_s.size(); ++i) errors_s[i] += master_s_[i];
     score.to_truth.push_back(te_of(std::move(errors_s)));
   }
+  score.failures = failures_.take();
   score.curves = curves_of(kept_);
   score.readings = std::move(kept_);
   return score;

@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/sync_failures.h"
 #include "evaluation/scoring/time_errors.h"
 #include "evaluation/stability/stability.h"
 #include "recording/clock_source.h"
@@ -75,6 +76,7 @@ struct ClockScore {
   // By host, the master's first: against true time, and against `pairs_with`.
   std::vector<HostTe> to_truth{};
   std::vector<HostTe> pairs{};
+  std::vector<SyncOutcome> failures{};  // of host synchronisation
   StabilityCurves curves{};
   ClockReadings readings{};
 };
@@ -86,6 +88,7 @@ class ClockScorer final : public ClockSink {
 
   void on_master(double error_s) override { master_error_s_ = error_s; }
   void on_errors(TrueTime at, std::span<const double> errors_s) override;
+  void on_outcome(const SyncOutcome& outcome) override { failures_.add(outcome); }
 
   // After the run, once. `messages`: those sent in `duration`.
   ClockScore finish(std::uint64_t messages);
@@ -105,6 +108,7 @@ class ClockScorer final : public ClockSink {
   double spread_sum_ms_ = 0;
   double spread_max_ms_ = 0;
   TimeErrors errors_;
+  SyncFailures failures_;
   std::array<std::optional<TrueTime>, 3> last_above_{};
   double holdover_60_ms_ = kNan;
   double holdover_600_ms_ = kNan;

@@ -54,6 +54,7 @@ class ResidenceTap final : public ClockSink {
   void on_errors(TrueTime at, std::span<const double> errors_s) override {
     sink_.on_errors(at, errors_s);
   }
+  void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
   void on_message(const ObservedMessage& message) override {
     sink_.on_message(message);
     if (message.from != 0 || message.lost) return;

@@ -16,6 +16,7 @@
 #include "evaluation/scoring/score_parts.h"
 #include "evaluation/scoring/session_scores.h"
 #include "evaluation/scoring/stamping.h"
+#include "evaluation/scoring/sync_failures.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -90,7 +91,7 @@ class PipelineScorer::Capture {
   std::optional<KeptFrames> kept_;  // for offline estimators
   HostErrors host_errors_;
   bool pulses_have_truth_ = false;
-  std::vector<SyncOutcome> failures_;
+  SyncFailures failures_;
   SessionScores sessions_;
   std::vector<std::unique_ptr<ScorePart>> parts_;
 };
@@ -219,7 +220,7 @@ void PipelineScorer::Capture::add(const RecordingEvent& event) {
     pulses_have_truth_ = true;
     if (table_.holds(pulse->pulse)) host_errors_.add(pulse->host_errors);
   } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
-    if (!outcome->synchronised) failures_.push_back(*outcome);
+    failures_.add(*outcome);
   } else {
     sessions_.add(event);
     stamping_.on_event(event);
@@ -267,7 +268,7 @@ SeedScore PipelineScorer::Capture::finish() {
   host_errors_.time_errors().add_to(score);
   score.host_errors_ms = host_errors_.signed_means_ms();
   for (const auto& part : parts_) part->add_to(score);
-  score.failures = std::move(failures_);
+  score.failures = failures_.take();
   sessions_.add_to(score);
   return score;
 }

@@ -235,6 +235,9 @@ Row read_clock_row(const JsonNode& node, std::size_t seeds) {
     const JsonNode values = node["metrics"][metric.id]["values"];
     metric.series(row) = evaluation::make_series(values.values_of(metric, seeds));
   }
+  if (node.has("unsynchronised_hosts")) {
+    row.unsynchronised_hosts = node["unsynchronised_hosts"].count();
+  }
   return row;
 }
 

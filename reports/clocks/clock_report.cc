@@ -188,6 +188,7 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
                 {"values", row.clock_spread_ms.values}}}};
   if (!row.model.empty()) all["model"] = row.model;
   all["notes"] = row.notes;
+  all["unsynchronised_hosts"] = row.unsynchronised_hosts;
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves())
     all[curve.id] = points_json(curves.*curve.points);
   all["max_te_ms"] = largest(row.max_te_ms.values);

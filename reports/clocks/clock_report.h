@@ -11,6 +11,7 @@
 //                seeds and of "max" the largest; "values": the mean in time of each seed},
 //              "adev", "mdev", "hdev": [{"tau_s", "value", "terms"}], RMS over slaves and seeds,
 //              "tdev_ms" likewise, "mtie_ms": the largest of any slave and seed,
+//              "unsynchronised_hosts": over all seeds,
 //              "max_te_ms": the largest of all seeds, "rms_te_ms": over all,
 //              "constant_te_ms", "dynamic_te_ms": the largest of all seeds,
 //              "below_ms": {"1", "0.1", "0.01"}: seconds until the spread stays below, the median

@@ -17,11 +17,18 @@ namespace {
 
 using scenarios::Scenario;
 
-class NoRecording final : public RecordingSink {
+// Passes on how the synchronisation ended.
+class OutcomesOnly final : public RecordingSink {
  public:
+  explicit OutcomesOnly(ClockSink& sink) : sink_(sink) {}
   void on_start(const RigLayout&) override {}
   void on_frames(std::span<const FrameRecord>, std::span<const FrameTruth>) override {}
-  void on_event(const RecordingEvent&) override {}
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* outcome = std::get_if<SyncOutcome>(&event)) sink_.on_outcome(*outcome);
+  }
+
+ private:
+  ClockSink& sink_;
 };
 
 // Counts the messages that leave before `end`, and passes all on.
@@ -65,12 +72,13 @@ class ClockRun {
         request_(request),
         sink_(sink),
         messages_(TrueTime{} + request.duration, sink),
+        outcomes_(sink),
         engine_({.cancel = request.cancel}),
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario_, request.seed, request.pipeline + "@" + scenario_.name,
                request.host_sync != nullptr ? request.host_sync->initial_clocks()
                                             : InitialClocks::kUnsynchronised,
-               *context_, nothing_),
+               *context_, outcomes_),
         synchronisation_(hosts_, *context_),
         clocks_(hosts_.clocks()),
         errors_s_(hosts_.size()) {
@@ -127,7 +135,7 @@ class ClockRun {
   const ClockRequest request_;
   ClockSink& sink_;
   MessageCount messages_;
-  NoRecording nothing_;
+  OutcomesOnly outcomes_;
   Engine engine_;
   std::unique_ptr<VirtualContext> context_;
   HostGroup hosts_;

@@ -80,7 +80,7 @@ TEST(ClockJson, ARowHasTheMembersThatAreStated) {
   EXPECT_EQ(row, ClockJson::parse(R"({
     "pipeline": "good", "host_sync": "good", "device_time": "raw_arrival", "gathering": "yoon2021",
     "clock_spread_ms": {"mean": 1.5, "median": 1.5, "p95": 1.5, "max": 3.0, "values": [0.5, 1.0, 3.0]},
-    "notes": [], "max_te_ms": 3.0, "constant_te_ms": 3.0, "dynamic_te_ms": 3.0,
+    "notes": [], "unsynchronised_hosts": 0, "max_te_ms": 3.0, "constant_te_ms": 3.0, "dynamic_te_ms": 3.0,
     "below_ms": {"1": 20.0, "0.1": null, "0.01": null},
     "holdover_ms": {"60": 1.0, "600": 1.0}, "recovery_s": 5.0, "packets_per_s": 1.0})"));
 }

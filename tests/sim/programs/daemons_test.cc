@@ -138,9 +138,8 @@ TEST_F(Daemons, ChronydMeetsTheLimitsOfItsSimulationTests) {
 
 // In a chain each host's chronyd serves the next: {master} is the host that it follows.
 TEST_F(Daemons, ChronydsInAChainFollowEachOther) {
-  const std::vector<Course> slaves =
-      run(chronyd("server {master} iburst\nallow"), scenarios::load_scenario("4host_chain_idle"),
-          7200, 1e-3);
+  const std::vector<Course> slaves = run(chronyd("server {master} iburst\nallow"),
+                                         scenarios::load_scenario("4host_chain_idle"), 7200, 1e-3);
   ASSERT_EQ(slaves.size(), 3U);
   for (const Course& slave : slaves) {
     EXPECT_LT(slave.settled_s, 600);
