@@ -14,6 +14,7 @@
   FILE(HostSyncEntry, host_sync_limits)                           \
   FILE(HostSyncEntry, host_sync_two_way)                          \
   FILE(HostSyncEntry, host_sync_ptp)                              \
+  FILE(HostSyncEntry, host_sync_gptp)                             \
   FILE(HostSyncEntry, host_sync_sptp)                             \
   FILE(HostSyncEntry, host_sync_huygens)                          \
   FILE(HostSyncEntry, host_sync_common_view)                      \

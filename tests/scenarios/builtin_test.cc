@@ -23,26 +23,28 @@ TEST(Builtin, AllAreThereInOrder) {
   for (const BuiltinScenario& scenario : builtin_scenarios()) names.push_back(scenario.name);
   EXPECT_THAT(
       names,
-      ElementsAre("18cam_1host_pcie", "18cam_6host_15fps", "18cam_6host_15fps_lan",
-                  "18cam_6host_30fps_studio", "18cam_6host_30fps_without_trigger",
-                  "18cam_6host_45fps", "18cam_6host_45fps_asymmetric_links",
-                  "18cam_6host_45fps_auto_exposure", "18cam_6host_45fps_clock_step_during_capture",
-                  "18cam_6host_45fps_frame_drops_10pct", "18cam_6host_45fps_lan",
-                  "18cam_6host_45fps_lan_hardware_clocks", "18cam_6host_45fps_lan_sdk_toa_1ms",
-                  "18cam_6host_45fps_late_first_frame", "18cam_6host_45fps_loaded_network",
-                  "18cam_6host_45fps_loss_and_reordering", "18cam_6host_45fps_staggered_start",
-                  "18cam_6host_45fps_unequal_delays", "18cam_6host_45fps_unequal_phases",
-                  "18cam_6host_45fps_wander_and_ramp", "18cam_6host_45fps_windows_tick",
-                  "18cam_6host_45fps_wrong_t_int", "18cam_6host_90fps_full_slave",
-                  "25cam_led_30fps", "2glasses_wifi_30fps", "3cam_1host_30fps", "3host_ptp_switch",
-                  "3host_ptp_switch_idle", "3host_ptp_switch_receive", "3host_ptp_switch_send",
-                  "4cam_wifi_ftm_10fps", "4host_chain", "4host_chain_cpu", "4host_chain_idle",
-                  "4host_chain_tcp", "4oak_poe_30fps", "5phone_wifi_30fps", "6cam_2host_30fps",
-                  "6cam_gige_ptp_60fps", "6host_lan_day", "6host_star", "6node_relay",
-                  "8cam_raspberry_30fps", "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
-                  "leaderboard_gathering", "leaderboard_lan", "leaderboard_lan_ideal_calibration",
-                  "leaderboard_programs", "leaderboard_without_cables", "pulse_index_off_by_two",
-                  "scale_18000cam_6000host_45fps"));
+      ElementsAre(
+          "18cam_1host_pcie", "18cam_6host_15fps", "18cam_6host_15fps_lan",
+          "18cam_6host_30fps_studio", "18cam_6host_30fps_without_trigger", "18cam_6host_45fps",
+          "18cam_6host_45fps_asymmetric_links", "18cam_6host_45fps_auto_exposure",
+          "18cam_6host_45fps_clock_step_during_capture", "18cam_6host_45fps_frame_drops_10pct",
+          "18cam_6host_45fps_lan", "18cam_6host_45fps_lan_hardware_clocks",
+          "18cam_6host_45fps_lan_sdk_toa_1ms", "18cam_6host_45fps_late_first_frame",
+          "18cam_6host_45fps_loaded_network", "18cam_6host_45fps_loss_and_reordering",
+          "18cam_6host_45fps_staggered_start", "18cam_6host_45fps_unequal_delays",
+          "18cam_6host_45fps_unequal_phases", "18cam_6host_45fps_wander_and_ramp",
+          "18cam_6host_45fps_windows_tick", "18cam_6host_45fps_wrong_t_int",
+          "18cam_6host_90fps_full_slave", "25cam_led_30fps", "2glasses_wifi_30fps",
+          "3cam_1host_30fps", "3host_ptp_switch", "3host_ptp_switch_idle",
+          "3host_ptp_switch_receive", "3host_ptp_switch_send", "4cam_wifi_ftm_10fps", "4host_chain",
+          "4host_chain_cpu", "4host_chain_idle", "4host_chain_tcp", "4host_gptp_chain",
+          "4oak_poe_30fps", "5phone_wifi_30fps", "6cam_2host_30fps", "6cam_gige_ptp_60fps",
+          "6host_lan_day", "6host_star", "6node_relay", "8cam_raspberry_30fps",
+          "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated", "leaderboard_gathering",
+          "leaderboard_lan", "leaderboard_lan_cpu", "leaderboard_lan_far_host",
+          "leaderboard_lan_ideal_calibration", "leaderboard_lan_paced", "leaderboard_lan_random",
+          "leaderboard_lan_tcp", "leaderboard_programs", "leaderboard_without_cables",
+          "pulse_index_off_by_two", "scale_18000cam_6000host_45fps"));
 }
 
 TEST(Builtin, AllLoadWithoutWarnings) {

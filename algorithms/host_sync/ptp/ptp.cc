@@ -68,6 +68,8 @@ void PtpSettings::bind(ParameterBinder& parameters) {
                           log_interval);
   parameters.number("delay_median", median_length, 1, 1e4, "length of the delay's moving median",
                     kLinuxPtp);
+  parameters.number("domain", domain, 0, 127, "domainNumber: messages of others are ignored",
+                    kLinuxPtp);
   servo_limits.bind_first_step(parameters, kLinuxPtp);
   parameters.scaled("step_threshold_us", servo_limits.step_threshold_ns, 1e3, 0, 1e12,
                     "later ones are steps above this; 0: never", kLinuxPtp);

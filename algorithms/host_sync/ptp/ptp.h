@@ -14,7 +14,8 @@
 //
 // The corrections of transparent clocks on the way are subtracted. Messages go as datagrams from
 // host to host, where real PTP would multicast: a slave costs four messages per interval (peer
-// delay: five). Lost, duplicated, reordered and foreign messages cost their measurement only. There
+// delay: five). Lost, duplicated, reordered and foreign messages cost their measurement only; those
+// of another domain than `domain`, and of 802.1AS, are foreign. There
 // is no Announce: who is master is stated, so the election's first seconds are not in the results.
 //
 // A service. Exchanges are reported for software stamps (t1, t2: Delay_Req or Pdelay_Req; t3, t4:
@@ -43,6 +44,7 @@ struct PtpSettings {
   bool is_peer_delay = false;
   StampSource stamps = StampSource::kKernel;
   Nanoseconds service_time = from_ms(300e3);  // before the capture
+  int domain = 0;
   Nanoseconds sync_interval = from_ms(1000);
   Nanoseconds delay_interval = from_ms(1000);
   std::size_t median_length = 10;

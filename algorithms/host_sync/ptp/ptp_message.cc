@@ -1,5 +1,7 @@
 #include "algorithms/host_sync/ptp/ptp_message.h"
 
+#include <algorithm>
+#include <array>
 #include <boost/endian/conversion.hpp>
 
 namespace simbench {
@@ -16,6 +18,11 @@ constexpr std::uint16_t kPort = 1;
 // Times this far from zero can still be subtracted in 64 bits.
 constexpr std::int64_t kMostSeconds = 4'000'000'000;
 
+// The follow-up information of 802.1AS.
+constexpr std::size_t kInformationBytes = 32;
+constexpr std::array<unsigned char, 10> kInformationHead = {0, 3, 0, 28, 0x00, 0x80, 0xc2, 0, 0, 1};
+constexpr std::uint8_t kGeneralised = 0x10;
+
 bool is_known(std::uint8_t type) { return type <= 0x3 || (type >= 0x8 && type <= 0xb); }
 
 bool is_response(PtpType type) {
@@ -26,6 +33,16 @@ bool is_response(PtpType type) {
 std::size_t length_of(PtpType type) {
   if (type == PtpType::kAnnounce) return kAnnounceBytes;
   return is_response(type) || type == PtpType::kPeerDelayRequest ? kLongBytes : kShortBytes;
+}
+
+std::size_t length_of(const PtpMessage& message) {
+  return length_of(message.type) + (message.scaled_rate_offset ? kInformationBytes : 0);
+}
+
+// Whether behind a Follow_Up at `at` of so many bytes there is the information of 802.1AS.
+bool has_information(const unsigned char* at, std::size_t bytes) {
+  return bytes == kShortBytes + kInformationBytes &&
+         std::equal(kInformationHead.begin(), kInformationHead.end(), at + kShortBytes);
 }
 
 std::uint8_t control_of(PtpType type) {
@@ -62,11 +79,13 @@ Nanoseconds correction_of(const PtpMessage& message) {
 }
 
 Bytes encode(const PtpMessage& message) {
-  Bytes bytes(length_of(message.type));
+  Bytes bytes(length_of(message));
   auto* at = reinterpret_cast<unsigned char*>(bytes.data());
   at[0] = static_cast<unsigned char>(message.type);
+  if (message.is_generalised) at[0] |= kGeneralised;
   at[1] = kPtpVersion;
   boost::endian::store_big_u16(at + 2, static_cast<std::uint16_t>(bytes.size()));
+  at[4] = message.domain;
   boost::endian::store_big_u16(at + 6, flags_of(message));
   boost::endian::store_big_s64(at + 8, message.correction);
   store_port(at + 20, message.sender);
@@ -79,6 +98,11 @@ Bytes encode(const PtpMessage& message) {
   boost::endian::store_big_u32(at + 40, static_cast<std::uint32_t>(rest_ns));
   if (is_response(message.type)) store_port(at + 44, message.asked_by);
   if (message.type == PtpType::kAnnounce) boost::endian::store_big_u64(at + 53, message.sender);
+  if (message.scaled_rate_offset) {
+    std::copy(kInformationHead.begin(), kInformationHead.end(), at + kShortBytes);
+    boost::endian::store_big_s32(at + kShortBytes + kInformationHead.size(),
+                                 *message.scaled_rate_offset);
+  }
   return bytes;
 }
 
@@ -89,8 +113,14 @@ std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes) {
   if (!is_known(type) || (at[1] & 0x0f) != kPtpVersion) return std::nullopt;
   PtpMessage message;
   message.type = static_cast<PtpType>(type);
-  if (bytes.size() != length_of(message.type)) return std::nullopt;
+  if (message.type == PtpType::kFollowUp && has_information(at, bytes.size())) {
+    message.scaled_rate_offset =
+        boost::endian::load_big_s32(at + kShortBytes + kInformationHead.size());
+  }
+  if (bytes.size() != length_of(message)) return std::nullopt;
   if (boost::endian::load_big_u16(at + 2) != bytes.size()) return std::nullopt;
+  message.is_generalised = (at[0] & 0xf0) == kGeneralised;
+  message.domain = at[4];
   message.is_simple = (boost::endian::load_big_u16(at + 6) & kSimple) == kSimple;
   message.correction = boost::endian::load_big_s64(at + 8);
   message.sender = static_cast<PeerId>(boost::endian::load_big_u64(at + 20));

@@ -4,10 +4,11 @@
 // 64 for Announce, 54 for the others):
 //
 //   offset  size  field
-//   0       1     transport specific (0) in the high nibble, message type in the low one
+//   0       1     transport specific (0; 1 of 802.1AS) in the high nibble, message type in the low
+//                 one
 //   1       1     version, 2
 //   2       2     length in bytes
-//   4       1     domain, 0
+//   4       1     domain
 //   6       2     flags; 0x0200 two-step; 0x2400 of SPTP (unicast, profile-specific 1)
 //   8       8     correction, signed, in 2^-16 ns; transparent clocks add to it on the way
 //   20      10    port identity of the sender: 8 bytes clock, 2 bytes port (1)
@@ -17,10 +18,12 @@
 //   34      10    time: 48-bit seconds, 32-bit nanoseconds
 //   44      10    Delay_Resp, Pdelay_Resp, Pdelay_Resp_Follow_Up: the requesting port
 //   44      20    Announce: 0, but the grandmaster's clock at 53: the sender
+//   44      32    Follow_Up of 802.1AS: the follow-up information TLV (type 3, length 28, 00-80-C2,
+//                 subtype 1), at 54 cumulativeScaledRateOffset, else 0
 //
 // Seconds are taken as signed, so that a clock before its zero can be sent.
 //
-// Source: IEEE 1588-2008 clause 13; facebook/time, ptp/sptp/README.md.
+// Source: IEEE 1588-2008 clause 13; IEEE 802.1AS-2020, 11.4.4; facebook/time, ptp/sptp/README.md.
 //
 //   Bytes bytes = encode(PtpMessage{.type = PtpType::kSync, .sequence = 7});
 #pragma once
@@ -51,6 +54,9 @@ struct PtpMessage {
   std::int64_t time_ns = 0;     // within +-4e18
   PeerId asked_by = 0;          // in responses; else 0
   bool is_simple = false;       // of SPTP (sptp.h)
+  std::uint8_t domain = 0;
+  bool is_generalised = false;                       // of 802.1AS (gptp.h)
+  std::optional<std::int32_t> scaled_rate_offset{};  // in its Follow_Up, 2^-41
   friend bool operator==(const PtpMessage&, const PtpMessage&) = default;
 };
 
@@ -59,8 +65,8 @@ Nanoseconds correction_of(const PtpMessage& message);
 
 Bytes encode(const PtpMessage& message);
 
-// Nothing unless it is a PTPv2 message of one of these types. Other flags, domain, control,
-// interval and what an Announce tells of the grandmaster are ignored.
+// Nothing unless it is a PTPv2 message of one of these types. Other flags, control, interval and
+// what an Announce tells of the grandmaster are ignored.
 std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes);
 
 }  // namespace simbench

@@ -32,6 +32,14 @@ PtpSettings with_limits_of(Host& host, PtpSettings settings) {
   return settings;
 }
 
+std::uint8_t domain_of(const PtpSettings& settings) {
+  return static_cast<std::uint8_t>(settings.domain);
+}
+
+bool is_foreign(const PtpMessage& message, const PtpSettings& settings) {
+  return message.is_generalised || message.domain != settings.domain;
+}
+
 // Until there is a first offset and a frequency: some Syncs, and what the PI servo waits.
 Nanoseconds start_up_time(const PtpSettings& settings) {
   const double servo_s =
@@ -58,7 +66,10 @@ Task<void> PtpMaster::run() {
 }
 
 Task<void> PtpMaster::send_sync() {
-  PtpMessage message{.type = PtpType::kSync, .sender = host_.id(), .sequence = ++sequence_};
+  PtpMessage message{.type = PtpType::kSync,
+                     .sender = host_.id(),
+                     .sequence = ++sequence_,
+                     .domain = domain_of(settings_)};
   Bytes sync = encode(message);
   const MessageId id = co_await channel().send(std::move(sync));
   const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
@@ -71,7 +82,7 @@ Task<void> PtpMaster::send_sync() {
 
 Task<void> PtpMaster::answer(ReceivedMessage received) {
   const std::optional<PtpMessage> request = decode_ptp_message(received.bytes);
-  if (!request) co_return;
+  if (!request || is_foreign(*request, settings_)) co_return;
   const std::optional<std::int64_t> arrival = stamps_.arrival(received);
   if (!arrival) co_return;
   if (request->type == PtpType::kPeerDelayRequest) {
@@ -85,7 +96,8 @@ Task<void> PtpMaster::answer(ReceivedMessage received) {
                            .sequence = request->sequence,
                            .correction = request->correction,
                            .time_ns = *arrival,
-                           .asked_by = request->sender});
+                           .asked_by = request->sender,
+                           .domain = domain_of(settings_)});
   co_await channel().send(std::move(response));
 }
 
@@ -95,7 +107,8 @@ Task<void> PtpMaster::answer_peer_delay(PtpMessage request, std::int64_t arrival
                      .sequence = request.sequence,
                      .correction = 0,
                      .time_ns = arrival,
-                     .asked_by = request.sender};
+                     .asked_by = request.sender,
+                     .domain = domain_of(settings_)};
   Bytes response = encode(message);
   const MessageId id = co_await channel().send(std::move(response));
   const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
@@ -156,7 +169,8 @@ Task<void> PtpSlave::run() {
 Task<void> PtpSlave::ask() {
   const PtpType type =
       settings_.is_peer_delay ? PtpType::kPeerDelayRequest : PtpType::kDelayRequest;
-  const PtpMessage message{.type = type, .sender = host_.id(), .sequence = ++sequence_};
+  const PtpMessage message{
+      .type = type, .sender = host_.id(), .sequence = ++sequence_, .domain = domain_of(settings_)};
   request_.reset();
   peer_response_.reset();
   peer_follow_up_.reset();
@@ -168,7 +182,7 @@ Task<void> PtpSlave::ask() {
 
 Task<void> PtpSlave::take(ReceivedMessage received) {
   const std::optional<PtpMessage> message = decode_ptp_message(received.bytes);
-  if (!message) co_return;
+  if (!message || is_foreign(*message, settings_)) co_return;
   const std::optional<std::int64_t> arrival = stamps_.arrival(received);
   const bool is_answer = request_ && message->sequence == request_->message.sequence &&
                          message->asked_by == host_.id();
@@ -261,12 +275,12 @@ void PtpSlave::report_outcome_if_due() {
   if (coupling_ ? coupling_->is_locked() : *is_locked_) return outcome_.synchronised(corrections_);
   const Nanoseconds waited = host_.steady_clock().now() - begin_;
   if (waited < start_up_time(settings_)) return;
-  outcome_.failed(corrections_, "the servo has not locked after " +
-                                    std::to_string(static_cast<int>(to_seconds(waited))) +
-                                    " s and " + std::to_string(corrections_) +
-                                    " measured offsets; is host " + std::to_string(master_) +
-                                    " running and reachable" +
-                                    ", and does it stamp its messages as this one does?");
+  outcome_.failed(
+      corrections_,
+      "the servo has not locked after " + std::to_string(static_cast<int>(to_seconds(waited))) +
+          " s and " + std::to_string(corrections_) + " measured offsets; is host " +
+          std::to_string(master_) + " running and reachable, in domain " +
+          std::to_string(settings_.domain) + ", and does it stamp its messages as this one does?");
 }
 
 }  // namespace simbench

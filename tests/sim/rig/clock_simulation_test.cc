@@ -7,12 +7,14 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "algorithms/host_sync/ptp/ptp.h"
 #include "algorithms/parameters.h"
 #include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
@@ -37,6 +39,7 @@ struct KeptReadings final : ClockSink {
   void on_errors(TrueTime at, std::span<const double> errors_s) override {
     readings.push_back({to_seconds(at.time_since_epoch()), {errors_s.begin(), errors_s.end()}});
   }
+  void on_outcome(const SyncOutcome& outcome) override { outcomes.push_back(outcome); }
   // The errors of the reading at that second, which must exist.
   const std::vector<double>& at(double second) const {
     for (const Reading& reading : readings) {
@@ -45,6 +48,7 @@ struct KeptReadings final : ClockSink {
     throw std::out_of_range("no such reading");
   }
   std::vector<Reading> readings;
+  std::vector<SyncOutcome> outcomes;
 };
 
 struct Kept {
@@ -491,6 +495,86 @@ TEST(ClockSimulation, ABoundaryClockServesWhatItFollows) {
     const std::vector<double> errors_s = errors_of_chain(host_sync);
     const double bound_s = std::string(host_sync) == "ntp" ? 1e-3 : 1e-6;
     for (const double error_s : errors_s) EXPECT_NEAR(error_s, 0, bound_s) << host_sync;
+  }
+}
+
+// The RMS error of a host over four seeds.
+double rms_in_chain_s(const char* host_sync, std::size_t host) {
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>(host_sync);
+  scenarios::Scenario scenario = scenarios::load_scenario("4host_gptp_chain");
+  scenario.hosts.nic.stamp_jitter_sigma_ns = 200;
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto sync = entry->make(check_parameters(entry->info.parameters, {}));
+    const Kept kept = read_clocks(scenario, {.seed = seed,
+                                             .pipeline = host_sync,
+                                             .host_sync = sync.get(),
+                                             .duration = seconds(900),
+                                             .interval = seconds(1)});
+    for (const auto& reading : kept.clocks.readings) {
+      if (reading.at_s < 120) continue;
+      sum += reading.errors_s[host] * reading.errors_s[host];
+      ++count;
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(count));
+}
+
+// Relays whose noise adds up by squares, against servos that follow servos.
+TEST(ClockSimulation, RelaysOfGeneralisedPtpPassLessNoiseOnThanBoundaryClocks) {
+  const double relayed = rms_in_chain_s("gptp_hardware", 3) / rms_in_chain_s("gptp_hardware", 1);
+  const double steered =
+      rms_in_chain_s("ptp_p2p_hardware", 3) / rms_in_chain_s("ptp_p2p_hardware", 1);
+  EXPECT_LT(relayed, std::sqrt(3.0));
+  EXPECT_GT(steered, 1.15 * relayed);
+}
+
+TEST(ClockSimulation, AnOrdinarySwitchIsNoLinkOfGeneralisedPtp) {
+  const HostSyncEntry* entry = find_algorithm<HostSyncEntry>("gptp_hardware");
+  const auto sync = entry->make(check_parameters(entry->info.parameters, {}));
+  const Kept kept =
+      read_clocks(scenarios::load_scenario("3host_ptp_switch"), {.pipeline = "gptp",
+                                                                 .host_sync = sync.get(),
+                                                                 .duration = seconds(60),
+                                                                 .interval = seconds(1)});
+  ASSERT_EQ(kept.clocks.outcomes.size(), 2U);
+  for (const SyncOutcome& outcome : kept.clocks.outcomes) {
+    EXPECT_FALSE(outcome.synchronised);
+    EXPECT_THAT(outcome.message, testing::HasSubstr("does not know 802.1AS"));
+  }
+}
+
+// A master of domain 1 and slaves of another.
+class OtherDomain final : public HostSync {
+ public:
+  explicit OtherDomain(int domain) : domain_(domain) {}
+  std::optional<Nanoseconds> warm_up() const override { return seconds(60); }
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override {
+    return serve_ptp(host, std::move(slaves), {.stamps = StampSource::kCard, .domain = 1});
+  }
+  Task<void> run_slave(Host& host, PeerId master) override {
+    return follow_ptp(host, master, {.stamps = StampSource::kCard, .domain = domain_});
+  }
+
+ private:
+  int domain_;
+};
+
+TEST(ClockSimulation, AMasterOfAnotherDomainIsNotFollowed) {
+  for (const int domain : {0, 1}) {
+    OtherDomain sync(domain);
+    scenarios::Scenario scenario = three_hosts();
+    scenario.hosts.nic = {.hardware_stamps = true, .stamp_resolution_ns = 1};
+    const Kept kept = read_clocks(scenario, {.pipeline = "domains",
+                                             .host_sync = &sync,
+                                             .duration = seconds(400),
+                                             .interval = seconds(1)});
+    ASSERT_EQ(kept.clocks.outcomes.size(), 2U);
+    for (const SyncOutcome& outcome : kept.clocks.outcomes) {
+      EXPECT_EQ(outcome.synchronised, domain == 1);
+    }
+    EXPECT_EQ(std::abs(kept.clocks.at(400)[1]) < 1e-3, domain == 1);
   }
 }
 
