@@ -173,6 +173,12 @@ void check_cpu_load(const Scenario& scenario) {
   check_delay_law(scenario, "/hosts/cpu_load/receive", load.receive);
 }
 
+void check_io_load(const Scenario& scenario) {
+  if (!scenario.hosts.io_load) return;
+  check_delay_law(scenario, "/hosts/io_load/receive", scenario.hosts.io_load->receive);
+  check_delay_law(scenario, "/hosts/io_load/wake_up", scenario.hosts.io_load->wake_up);
+}
+
 void check_stack(const Scenario& scenario) {
   if (!scenario.hosts.stack) return;
   const Stack& stack = *scenario.hosts.stack;
@@ -571,6 +577,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_radio_laws(scenario);
   check_stack(scenario);
   check_cpu_load(scenario);
+  check_io_load(scenario);
   check_load(scenario);
   check_streams(scenario);
   check_rates(scenario);

@@ -41,6 +41,11 @@ class Causes {
     add("the traffic between hosts", scenario_.network.traffic.empty()
                                          ? std::vector<Override>{}
                                          : std::vector<Override>{{"/network/traffic", "[]"}});
+    add("disk I/O", scenario_.hosts.io_load ? std::vector<Override>{{"/hosts/io_load", "null"}}
+                                            : std::vector<Override>{});
+    add("the processors taken from virtual machines",
+        scenario_.hosts.steal ? std::vector<Override>{{"/hosts/steal", "null"}}
+                              : std::vector<Override>{});
     add("the load of the processors", scenario_.hosts.cpu_load
                                           ? std::vector<Override>{{"/hosts/cpu_load", "null"}}
                                           : std::vector<Override>{});

@@ -18,6 +18,8 @@ constexpr ComponentKey kColdTransmit("load: cold transmit");
 constexpr ComponentKey kColdWakeUp("load: cold wake up");
 constexpr ComponentKey kLoadedWakeUp("load: wake up");
 constexpr ComponentKey kLoadedReceive("load: receive");
+constexpr ComponentKey kIoReceive("disk load: receive");
+constexpr ComponentKey kIoWakeUp("disk load: wake up");
 constexpr ComponentKey kModeration("stack: interrupt moderation");
 constexpr ComponentKey kSleepiness("stack: sleep");
 
@@ -70,6 +72,10 @@ MessageStack::LoadParts::LoadParts(const scenarios::CpuLoad& load, std::uint64_t
       wake_up(load.wake_up, run_seed, kLoadedWakeUp, host, factor),
       receive(load.receive, run_seed, kLoadedReceive, host, factor) {}
 
+MessageStack::IoParts::IoParts(const scenarios::IoLoad& load, std::uint64_t run_seed, PeerId host)
+    : receive(load.receive, run_seed, kIoReceive, host, 1),
+      wake_up(load.wake_up, run_seed, kIoWakeUp, host, 1) {}
+
 MessageStack::MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed, PeerId host)
     : moderation_(run_seed, kModeration) {
   if (hosts.stack) {
@@ -80,6 +86,8 @@ MessageStack::MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed
         RandomStream(run_seed, kLoadOfHost, host).lognormal(hosts.cpu_load->host_log_sigma);
     load_.emplace(*hosts.cpu_load, run_seed, host, factor);
   }
+  if (hosts.io_load) io_.emplace(*hosts.io_load, run_seed, host);
+  if (hosts.steal) stolen_.emplace(*hosts.steal, run_seed, host);
 }
 
 void MessageStack::works(TrueTime at) {
@@ -93,6 +101,7 @@ Nanoseconds MessageStack::transmit(TrueTime at, const MessageKey& key) {
     delay += parts_->transmit.draw(at, key);
     stay_awake(at + delay);
   }
+  if (stolen_) delay += stolen_->wait(at + delay);
   works(at + delay);
   return delay;
 }
@@ -104,13 +113,18 @@ Nanoseconds MessageStack::to_card(TrueTime left, const MessageKey& key) {
 }
 
 TrueTime MessageStack::receive(TrueTime at, const MessageKey& key) {
-  const Nanoseconds under_load = load_ ? load_->receive.draw(at, key) : Nanoseconds(0);
-  if (!parts_) return at + under_load;
+  Nanoseconds under_load = load_ ? load_->receive.draw(at, key) : Nanoseconds(0);
+  if (io_) under_load += io_->receive.draw(at, key);
+  if (!parts_) {
+    const TrueTime done = at + under_load;
+    return stolen_ ? done + stolen_->wait(done) : done;
+  }
   TrueTime stamp = interrupt(at, key) + under_load;
   if (sleeps(stamp)) {
     stamp += from_us(parts_->factor * parts_->stated.sleep_exit_us);
   }
   stamp += parts_->receive.draw(at, key);
+  if (stolen_) stamp += stolen_->wait(stamp);
   parts_->last_stamp = std::max(parts_->last_stamp, stamp);
   stay_awake(parts_->last_stamp);
   return parts_->last_stamp;
@@ -149,6 +163,8 @@ Nanoseconds MessageStack::wake_up(TrueTime stamped, const MessageKey& key) {
     delay += load_->wake_up.draw(stamped, key);
     if (is_cold(stamped)) delay += load_->cold_wake_up.draw(stamped, key);
   }
+  if (io_) delay += io_->wake_up.draw(stamped, key);
+  if (stolen_) delay += stolen_->wait(stamped + delay);
   works(stamped + delay);
   return delay;
 }

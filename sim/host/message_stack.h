@@ -27,10 +27,15 @@
 // within that time is warm. A client's request and a server's wake-up are cold, the server's answer
 // and the client's wake-up for it warm: their difference does not average out.
 //
+// Under /hosts/io_load the kernel's work and wake-ups take longer still. Where /hosts/steal takes a
+// virtual machine's processor away (steal.h), what would end meanwhile ends when it is back: the
+// send call, the software stamps and the wake-up, but not the card's part.
+//
 // Without /hosts/stack nothing of that takes time. Not modelled: which processor core serves,
 // batches that share one pass (NAPI), and the stack's own queue under overload.
 //
-// Source: docs/reference/host_sync.md section 4; scenario /hosts/stack and /hosts/cpu_load. Cost:
+// Source: docs/reference/host_sync.md section 4; scenario /hosts/stack, /hosts/cpu_load,
+// /hosts/io_load and /hosts/steal. Cost:
 // some 100 ns a message.
 //
 //   MessageStack stack(scenario.hosts, seed, 3);
@@ -49,6 +54,7 @@
 #include "scenarios/scenario.h"
 #include "sim/engine/normal_process.h"
 #include "sim/engine/random.h"
+#include "sim/host/steal.h"
 
 namespace simbench::sim {
 
@@ -107,6 +113,13 @@ class MessageStack {
     TrueTime warm_until = TrueTime::min();
   };
 
+  // What the load of the disks adds.
+  struct IoParts {
+    IoParts(const scenarios::IoLoad& stated, std::uint64_t run_seed, PeerId host);
+    DelayProcess receive;
+    DelayProcess wake_up;
+  };
+
   struct Parts {
     Parts(const scenarios::Stack& stated, std::uint64_t run_seed, PeerId host, double factor);
     const scenarios::Stack& stated;
@@ -132,6 +145,8 @@ class MessageStack {
 
   std::optional<Parts> parts_;     // nothing without /hosts/stack
   std::optional<LoadParts> load_;  // nothing without /hosts/cpu_load
+  std::optional<IoParts> io_;      // without /hosts/io_load
+  std::optional<StolenTime> stolen_;
 };
 
 }  // namespace simbench::sim
