@@ -39,7 +39,7 @@ TEST(Builtin, AllAreThereInOrder) {
           "3host_ptp_switch_receive", "3host_ptp_switch_send", "4cam_wifi_ftm_10fps", "4host_chain",
           "4host_chain_cpu", "4host_chain_idle", "4host_chain_tcp", "4host_gptp_chain",
           "4oak_poe_30fps", "5phone_wifi_30fps", "6cam_2host_30fps", "6cam_gige_ptp_60fps",
-          "6cam_usb3_vision_50fps", "6host_lan_day", "6host_star", "6node_relay",
+          "6host_lan_day", "6host_star", "6node_relay",
           "8cam_raspberry_30fps", "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
           "leaderboard_gathering", "leaderboard_lan", "leaderboard_lan_cpu",
           "leaderboard_lan_far_host", "leaderboard_lan_ideal_calibration", "leaderboard_lan_paced",

@@ -162,7 +162,6 @@ const std::vector<Golden>& goldens() {
       {"4host_chain", "chrony_hw_xleave", 27405, 0xd72662579205bcfe, 0xf0dfba6462d03542},
       {"4host_chain_cpu", "chrony_sw", 3885, 0xc83095f635ac1d21, 0x7842ec26f7ba6330},
       {"4host_chain_idle", "chrony_sw", 3920, 0x87089f7363522c7d, 0x84265f2ffc65c626},
-      {"6cam_usb3_vision_50fps", "yoon2021_both", 0, 0, 0},
       {"4host_gptp_chain", "gptp_hardware", 25685, 0xa940bc81baca38c6, 0x12ee88d45a7d347},
       {"leaderboard_lan_cpu", "host.chrony_sw", 7399, 0x5db7a451189ff90, 0x86864f702200abce},
       {"leaderboard_lan_far_host", "host.two_way_hull", 21145, 0x9d2b61fa42e5382f,
