@@ -17,6 +17,7 @@
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/metrics.h"
 #include "scenarios/calibration.h"
+#include "scenarios/camera_groups.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -248,16 +249,28 @@ CalibratedDelays calibrated_delays(const Scenario& scenario) {
   return delays;
 }
 
+std::vector<CalibratedDelays> delays_of_groups(const Scenario& scenario) {
+  std::vector<CalibratedDelays> delays;
+  for (std::size_t group = 0; group < scenarios::group_count(scenario.cameras); ++group) {
+    delays.push_back(calibrated_delays(scenarios::group_alone(scenario, group)));
+  }
+  return delays;
+}
+
 Nanoseconds earlier_by_sdk(const Scenario& scenario) {
   const Nanoseconds quantum = from_ms(scenario.hosts.clock.arrival_quantum_ms);
   return quantum < kSdkResolution ? (kSdkResolution - quantum) / 2 : Nanoseconds(0);
 }
 
-// What the pipeline's device_time subtracts.
-CalibratedDelays delays_of(const Scenario& scenario, const PipelineChoice& choice) {
-  if (!choice.device_time_variants.calibrated) return {};
-  CalibratedDelays delays = choice.delays();
-  if (choice.device_time_variants.sdk) delays.arrival -= earlier_by_sdk(scenario);
+// What the pipeline's device_time subtracts, of each group of cameras.
+std::vector<CalibratedDelays> delays_of(const Scenario& scenario, const PipelineChoice& choice) {
+  if (!choice.device_time_variants.calibrated) {
+    return std::vector<CalibratedDelays>(scenarios::group_count(scenario.cameras));
+  }
+  std::vector<CalibratedDelays> delays = choice.delays();
+  for (CalibratedDelays& each : delays) {
+    if (choice.device_time_variants.sdk) each.arrival -= earlier_by_sdk(scenario);
+  }
   return delays;
 }
 
@@ -370,8 +383,8 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   check_published_figures(scenario);
   std::vector<PipelineChoice> all;
   std::vector<std::string> known;
-  const scenarios::Lazy<CalibratedDelays> delays(
-      [scenario] { return calibrated_delays(scenario); });
+  const scenarios::Lazy<std::vector<CalibratedDelays>> delays(
+      [scenario] { return delays_of_groups(scenario); });
   for (std::size_t index = 0; index < scenario.pipelines.size(); ++index) {
     all.push_back(choose(scenario, index));
     all.back().delays = delays;
@@ -422,17 +435,19 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.can_be_made()) {
     setup.make_estimator = [chosen = choice.device_time, variants = choice.device_time_variants,
-                            delays = delays_of(scenario, choice)] {
-      return make_variant(variants, chosen.make(), delays);
+                            groups = scenarios::group_of_cameras(scenario.cameras),
+                            delays = delays_of(scenario, choice)](std::size_t camera) {
+      const std::size_t group = delays.size() == 1 ? 0 : groups.at(camera);
+      return make_variant(variants, chosen.make(), delays[group]);
     };
   }
   const DeviceTimeEntry* offline = find_algorithm<DeviceTimeEntry>("regression_offline");
   if (choice.scores_offline && offline != nullptr &&
       scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
-    setup.make_second_estimator = [make = offline->make,
-                                   parameters = parameters_of(scenario, offline->info)] {
-      return make(parameters);
-    };
+    setup.make_second_estimator =
+        [make = offline->make, parameters = parameters_of(scenario, offline->info)](std::size_t) {
+          return make(parameters);
+        };
   }
   return setup;
 }

@@ -54,6 +54,7 @@ struct SimStream {
   Shutter shutter;
   std::unique_ptr<SteeredSensor> sensor;  // in place of the shutter, where no trigger reaches it
   FrameDelays delays;
+  double stamp_noise_sigma_ns;
   RandomStream stamp_noise;
   RandomStream loss;
   RandomStream unsteadiness;
@@ -72,6 +73,19 @@ struct SimStream {
     shutter.set_exposure(exposure);
     return shutter.on_timer(now);
   }
+};
+
+// What is true of each camera, by its group (scenarios/camera_groups.h).
+class CameraKinds {
+ public:
+  explicit CameraKinds(const scenarios::Cameras& cameras);
+  const scenarios::Cameras& of(std::size_t camera) const {
+    return groups_[group_of_camera_[camera]];
+  }
+
+ private:
+  std::vector<std::size_t> group_of_camera_;
+  std::vector<scenarios::Cameras> groups_;
 };
 
 // How long after the capture's start this camera starts.
@@ -111,6 +125,7 @@ class SimCameras {
   Nanoseconds first_exposure(std::size_t camera) const;
 
   const scenarios::Scenario& scenario_;
+  CameraKinds kinds_;
   std::uint64_t seed_;
   std::uint32_t controllers_ = 0;
   std::vector<AutoExposureLoop> exposures_;

@@ -38,8 +38,9 @@ TEST(Builtin, AllAreThereInOrder) {
                   "3host_ptp_switch_idle", "3host_ptp_switch_receive", "3host_ptp_switch_send",
                   "4cam_wifi_ftm_10fps", "4host_chain", "4host_chain_cpu", "4host_chain_idle",
                   "4host_chain_tcp", "4oak_poe_30fps", "5phone_wifi_30fps", "6cam_2host_30fps",
-                  "6cam_gige_ptp_60fps", "6host_lan_day", "6host_star", "6node_relay",
-                  "8cam_raspberry_30fps", "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
+                  "6cam_gige_ptp_60fps", "6cam_mixed_models_30fps", "6host_lan_day", "6host_star",
+                  "6node_relay", "8cam_raspberry_30fps", "8cam_raspberry_hq_30fps",
+                  "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
                   "leaderboard_gathering", "leaderboard_lan", "leaderboard_lan_ideal_calibration",
                   "leaderboard_programs", "leaderboard_without_cables", "pulse_index_off_by_two",
                   "scale_18000cam_6000host_45fps"));
