@@ -109,7 +109,8 @@ void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
   const double rate = scenario.trigger.pulse_rate_hz();
   const PulseWindow window(stream.mode_rate_hz);
   const bool is_faster = window.is_faster(rate);
-  if (!window.is_slower(rate) && !is_faster) return;
+  const bool may_be_slower = follows_trigger && scenario.cameras.begins_at_pulse();
+  if (!is_faster && (may_be_slower || !window.is_slower(rate))) return;
   fail_at(
       scenario, "/trigger/rate_hz",
       fmt::format("found {:.6g} Hz, allowed {:.6g} to {:.6g} Hz in sync mode \"{}\" with a {} "
@@ -189,20 +190,32 @@ void check_controllers(const Scenario& scenario) {
   }
 }
 
-// All cameras must answer the same pulses: sets hold a frame of each.
-void check_equal_rates(const Scenario& scenario, const Scenario& alone,
-                       const std::string& pointer) {
-  const Stream& common = scenario.cameras.streams.front();
-  const Stream& own = alone.cameras.streams.front();
-  const bool are_equal = scenario.cameras.sync_mode == SyncMode::kGenlock
-                             ? alone.pulses_per_frame(own) == scenario.pulses_per_frame(common)
-                             : own.mode_rate_hz == common.mode_rate_hz;
-  if (are_equal) return;
-  fail_at(scenario, pointer + "/mode_rate_hz",
-          fmt::format("found {}, allowed the rate of /cameras/streams/0, {}: cameras of one rig "
-                      "expose at the same pulses, and unequal rates are not simulated; give all "
-                      "the slower rate, or these cameras a scenario of their own",
-                      own.mode_rate_hz, common.mode_rate_hz));
+// The pulses that the cameras of a group get, in the mode of their stream.
+void check_rate_of_group(const Scenario& alone, std::int64_t pulses_per_frame,
+                         const std::string& pointer) {
+  const Stream& stream = alone.cameras.streams.front();
+  const bool follows = alone.cameras.follows_trigger(stream);
+  if (!follows && pulses_per_frame > 1) {
+    fail_at(alone, pointer + "/pulses_per_frame",
+            fmt::format("found {}, allowed 1: in sync mode \"{}\" the {} stream gets no pulses",
+                        pulses_per_frame, to_text(alone.cameras.sync_mode), to_text(stream.kind)));
+  }
+  const double rate_hz = alone.trigger.pulse_rate_hz();
+  const PulseWindow window(stream.mode_rate_hz);
+  const bool begins_at_pulse = follows && alone.cameras.begins_at_pulse();
+  const bool is_genlock = alone.cameras.sync_mode == SyncMode::kGenlock;
+  const bool is_faster =
+      is_genlock ? alone.pulses_per_frame(stream) > 1 : window.is_faster(rate_hz);
+  if (!is_faster && (begins_at_pulse || !window.is_slower(rate_hz))) return;
+  fail_at(
+      alone, pointer + "/mode_rate_hz",
+      fmt::format("found {}, which does not answer each of {:.6g} pulses a second (one in {} of "
+                  "/trigger/rate_hz), allowed {}; a pulses_per_frame of the group changes the "
+                  "pulses that it gets",
+                  stream.mode_rate_hz, rate_hz, pulses_per_frame,
+                  is_genlock        ? "at least twice that rate"
+                  : begins_at_pulse ? "at least that rate"
+                                    : "that rate"));
 }
 
 void check_shutter(const Scenario& scenario, const Stream& stream, const CameraProfile& camera,
@@ -236,7 +249,7 @@ void check_groups(const Scenario& scenario) {
     const CameraProfile& camera = checked_profile(alone, pointer);
     check_sync_mode_of_group(alone, camera, pointer);
     check_profile(alone, camera, pointer, stream);
-    check_equal_rates(scenario, alone, pointer);
+    check_rate_of_group(alone, pulses_per_frame(scenario.cameras, group), pointer);
     if (alone.cameras.sync_mode != SyncMode::kGenlock) {
       check_full_rate(alone, camera, pointer, stream);
     }

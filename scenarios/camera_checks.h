@@ -8,7 +8,7 @@
 namespace simbench::scenarios {
 
 // Throws InputError unless the models have what is asked of them, and the groups hold all cameras,
-// share no USB controller and expose at the same pulses.
+// share no USB controller and answer the pulses that they get.
 void check_camera_models(const Scenario& scenario);
 
 }  // namespace simbench::scenarios

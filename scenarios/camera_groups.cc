@@ -42,6 +42,10 @@ std::vector<std::size_t> group_of_cameras(const Cameras& cameras) {
   return groups;
 }
 
+std::int64_t pulses_per_frame(const Cameras& cameras, std::size_t group) {
+  return cameras.groups.empty() ? 1 : cameras.groups[group].pulses_per_frame;
+}
+
 Cameras cameras_of_group(const Cameras& cameras, std::size_t group) {
   if (cameras.groups.empty()) return cameras;
   const CameraGroup& own = cameras.groups[group];
@@ -78,6 +82,11 @@ Scenario group_alone(const Scenario& scenario, std::size_t group) {
   for (std::size_t camera = first; camera < first + count; ++camera) {
     cameras.host_of_camera.push_back(scenario.host_of(static_cast<std::int64_t>(camera)));
   }
+  // A trigger of its own rate; exposures keep what the rig's period adds to them.
+  const auto divider = static_cast<double>(pulses_per_frame(scenario.cameras, group));
+  result.trigger.rate_hz /= divider;
+  cameras.exposure_camera_periods /= divider;
+  cameras.exposure_host_periods /= divider;
   keep_part(cameras.skew_of_camera_ppm, first, count);
   keep_part(cameras.stamp_epoch_of_camera_s, first, count);
   keep_part(result.trigger.delay_of_camera_us, first, count);

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "scenarios/scenario.h"
@@ -28,11 +29,15 @@ std::size_t group_count(const Cameras& cameras);
 // The group of each camera.
 std::vector<std::size_t> group_of_cameras(const Cameras& cameras);
 
+// The cameras of a group answer one of so many pulses (/cameras/groups/N/pulses_per_frame).
+std::int64_t pulses_per_frame(const Cameras& cameras, std::size_t group);
+
 // What is true of all cameras of a group, in place of that of /cameras. Lists with an element for
 // each camera stay those of the whole rig.
 Cameras cameras_of_group(const Cameras& cameras, std::size_t group);
 
-// The rig of the group's cameras alone, on the hosts that they are on.
+// The rig of the group's cameras alone, on the hosts that they are on, with a trigger that has the
+// pulses that they answer.
 Scenario group_alone(const Scenario& scenario, std::size_t group);
 
 }  // namespace simbench::scenarios

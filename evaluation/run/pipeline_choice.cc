@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -412,6 +413,24 @@ const Scenario& scoring_scenario(const Scenario& scenario, const PipelineChoice&
   return choice.scored_in ? *choice.scored_in : scenario;
 }
 
+namespace {
+
+// Groups of cameras that answer different pulses.
+void count_unequal_rates(const Scenario& scenario, ScorerSetup& setup) {
+  for (const scenarios::CameraGroup& group : scenario.cameras.groups) {
+    setup.due_every = std::lcm(setup.due_every, group.pulses_per_frame);
+  }
+  if (setup.due_every == 1) return;
+  for (const std::size_t group : scenarios::group_of_cameras(scenario.cameras)) {
+    const scenarios::Scenario alone = scenarios::group_alone(scenario, group);
+    setup.pulses_per_frame_of_camera.push_back(
+        alone.pulses_per_passed_frame(*alone.scored_stream()) *
+        scenarios::pulses_per_frame(scenario.cameras, group));
+  }
+}
+
+}  // namespace
+
 ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
   ScorerSetup setup;
   setup.stream = scenario.evaluation.stream;
@@ -429,6 +448,7 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   if (const scenarios::Stream* scored = scenario.scored_stream()) {
     setup.pulses_per_frame = scenario.pulses_per_passed_frame(*scored);
   }
+  count_unequal_rates(scenario, setup);
   setup.make_gatherer = [chosen = choice.gathering](const GatheringSetup& gathering) {
     return chosen.make(gathering);
   };

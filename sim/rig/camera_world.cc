@@ -181,7 +181,7 @@ std::optional<ObservedPulse> CameraWorld::begin_slot() {
 void CameraWorld::expose_by_pulse(const HostSide& host, const ObservedPulse& pulse) {
   for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
     SimStream& stream = cameras_.stream(id);
-    if (stream.runs_free()) continue;
+    if (stream.runs_free() || pulse.pulse % stream.pulses_per_frame != 0) continue;
     const TrueTime at_camera = pulse.at + trigger_.delay_to(stream.camera);
     stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
     const auto exposure = stream.shutter.on_pulse(at_camera, pulse.pulse);

@@ -23,8 +23,8 @@ Nanoseconds hold_time(const scenarios::Usb& usb, const scenarios::Stream& stream
 
 ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Stream& stream) {
   if (!cameras.follows_trigger(stream)) return ShutterMode::kFreeRunning;
-  return cameras.sync_mode == scenarios::SyncMode::kGenlock ? ShutterMode::kGenlock
-                                                            : ShutterMode::kSlave;
+  if (cameras.sync_mode == scenarios::SyncMode::kGenlock) return ShutterMode::kGenlock;
+  return cameras.begins_at_pulse() ? ShutterMode::kTriggered : ShutterMode::kSlave;
 }
 
 }  // namespace
@@ -32,7 +32,8 @@ ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Str
 CameraKinds::CameraKinds(const scenarios::Cameras& cameras)
     : group_of_camera_(scenarios::group_of_cameras(cameras)) {
   for (std::size_t group = 0; group < scenarios::group_count(cameras); ++group) {
-    groups_.push_back(scenarios::cameras_of_group(cameras, group));
+    groups_.push_back({.cameras = scenarios::cameras_of_group(cameras, group),
+                       .pulses_per_frame = scenarios::pulses_per_frame(cameras, group)});
   }
 }
 
@@ -159,6 +160,7 @@ SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
           .controller = 0,
           .index_on_controller = 0,
           .kind = profile.kind,
+          .pulses_per_frame = kinds_.pulses_per_frame(camera),
           .bytes = bytes,
           .transfer_ns = bytes / bytes_per_ns(scenario_.usb),
           .latency = from_ms(

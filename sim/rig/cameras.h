@@ -44,13 +44,14 @@ struct SimStream {
   std::uint32_t controller;  // counted over all hosts
   std::uint32_t index_on_controller;
   StreamKind kind;
-  double bytes;         // of a frame
-  double transfer_ns;   // of a frame that is alone on the bus
-  Nanoseconds latency;  // from the end of the exposure to the offer to the bus
-  Nanoseconds hold;     // so long after its offer a frame may be transferred
-  Nanoseconds readout;  // of a rolling shutter
-  double late_ns;       // delivered later than a camera of the model is (may be negative)
-  TrueTime started;     // to stream
+  std::int64_t pulses_per_frame;  // it gets one of so many
+  double bytes;                   // of a frame
+  double transfer_ns;             // of a frame that is alone on the bus
+  Nanoseconds latency;            // from the end of the exposure to the offer to the bus
+  Nanoseconds hold;               // so long after its offer a frame may be transferred
+  Nanoseconds readout;            // of a rolling shutter
+  double late_ns;                 // delivered later than a camera of the model is (may be negative)
+  TrueTime started;               // to stream
   Shutter shutter;
   std::unique_ptr<SteeredSensor> sensor;  // in place of the shutter, where no trigger reaches it
   FrameDelays delays;
@@ -79,13 +80,18 @@ struct SimStream {
 class CameraKinds {
  public:
   explicit CameraKinds(const scenarios::Cameras& cameras);
-  const scenarios::Cameras& of(std::size_t camera) const {
-    return groups_[group_of_camera_[camera]];
-  }
+  const scenarios::Cameras& of(std::size_t camera) const { return group(camera).cameras; }
+  std::int64_t pulses_per_frame(std::size_t camera) const { return group(camera).pulses_per_frame; }
 
  private:
+  struct Group {
+    scenarios::Cameras cameras;
+    std::int64_t pulses_per_frame = 1;
+  };
+  const Group& group(std::size_t camera) const { return groups_[group_of_camera_[camera]]; }
+
   std::vector<std::size_t> group_of_camera_;
-  std::vector<scenarios::Cameras> groups_;
+  std::vector<Group> groups_;
 };
 
 // How long after the capture's start this camera starts.

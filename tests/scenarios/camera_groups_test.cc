@@ -73,11 +73,39 @@ TEST(CameraGroups, AControllerIsOfOneGroup) {
                         "group 0, allowed controllers of one group: 1 makes them so"));
 }
 
-TEST(CameraGroups, UnequalRatesAreRefused) {
-  EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/mode_rate_hz", "60"}}),
-              HasSubstr("/cameras/groups/1/mode_rate_hz=60: found 60, allowed the rate of "
-                        "/cameras/streams/0, 30: cameras of one rig expose at the same pulses, and "
-                        "unequal rates are not simulated"));
+TEST(CameraGroups, AGroupAnswersThePulsesThatItGets) {
+  EXPECT_THAT(error_of_mixed({{"/trigger/rate_hz", "50"}}), IsEmpty());
+  EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/mode_rate_hz", "15"}}),
+              HasSubstr("/cameras/groups/1/mode_rate_hz=15: found 15, which does not answer each "
+                        "of 30 pulses a second (one in 1 of /trigger/rate_hz), allowed at least "
+                        "that rate; a pulses_per_frame of the group changes the pulses that it "
+                        "gets"));
+  EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/mode_rate_hz", "15"},
+                              {"/cameras/groups/1/pulses_per_frame", "2"}}),
+              IsEmpty());
+  EXPECT_THAT(error_of_mixed({{"/cameras/sync_mode", "default"},
+                              {"/cameras/streams/0/mode_rate_hz", "30"},
+                              {"/cameras/groups/1/pulses_per_frame", "2"}}),
+              HasSubstr("/cameras/groups/1/pulses_per_frame=2: found 2, allowed 1: in sync mode "
+                        "\"default\" the colour stream gets no pulses"));
+}
+
+// A camera whose exposures begin at the pulse takes any slower pulses, others those near their
+// mode.
+TEST(CameraGroups, SlowerPulses) {
+  EXPECT_THAT(error_of_mixed({{"/trigger/rate_hz", "12"}}), IsEmpty());
+  EXPECT_THAT(error_of_set("/trigger/rate_hz", "30"), IsEmpty());  // genlock
+}
+
+TEST(CameraGroups, AGroupWithFewerPulsesIsARigWithASlowerTrigger) {
+  const Scenario scenario = load_scenario(kMixed, {{"/cameras/groups/1/pulses_per_frame", "3"},
+                                                   {"/cameras/exposure_camera_periods", "0.06"}});
+  EXPECT_EQ(pulses_per_frame(scenario.cameras, 0), 1);
+  EXPECT_EQ(pulses_per_frame(scenario.cameras, 1), 3);
+  const Scenario second = group_alone(scenario, 1);
+  EXPECT_EQ(second.trigger.rate_hz, 10);
+  EXPECT_DOUBLE_EQ(second.cameras.exposure_camera_periods * second.trigger.period_ms(),
+                   scenario.cameras.exposure_camera_periods * scenario.trigger.period_ms());
 }
 
 TEST(CameraGroups, AGroupsModelHasWhatIsAskedOfIt) {

@@ -114,6 +114,36 @@ TEST(CameraGroups, CalibratedDelaysAreOfEachGroup) {
   EXPECT_DOUBLE_EQ(delay_ms(1), 9);
 }
 
+// Pulses of 45 Hz, of which the second camera gets every third.
+TEST(CameraGroups, AGroupExposesAtOnePulseOfSoMany) {
+  scenarios::Scenario s = two_models();
+  s.cameras.groups[1].pulses_per_frame = 3;
+  const CapturedFrames result = capture(s);
+  std::int64_t expected = 0;
+  for (const CapturedFrames::Frame& frame : nonempty(result.of(1))) {
+    EXPECT_EQ(frame.truth.pulse, expected);
+    EXPECT_EQ(frame.record.counter, static_cast<std::uint32_t>(expected / 3));
+    expected += 3;
+  }
+  EXPECT_GE(result.of(0).size(), 3 * result.of(1).size() - 2);
+}
+
+// A triggered camera exposes from the pulse on, whatever its mode and exposure are.
+TEST(CameraGroups, TriggeredExposuresBeginAtThePulse) {
+  scenarios::Scenario s = two_models();
+  s.cameras.sync_mode = scenarios::SyncMode::kSlave;
+  s.cameras.model = "basler_aca1920_155um";
+  s.cameras.streams[0].kind = StreamKind::kColour;
+  s.evaluation.stream = StreamKind::kColour;
+  s.cameras.groups[1].mode_rate_hz = 50;
+  s.cameras.groups[1].exposure_ms = 9;
+  for (const auto& [record, truth] : nonempty(capture(s).frames)) {
+    const double later_ms = record.camera == 1 ? kLaterUs * 1e-3 : 0;
+    EXPECT_NEAR(to_ms(truth.exposure_start.time_since_epoch()), pulse_ms(truth) + later_ms, 2e-6);
+    EXPECT_EQ(truth.exposure_end - truth.exposure_start, from_ms(record.camera == 1 ? 9 : 4));
+  }
+}
+
 // A group that states nothing is as the rest.
 TEST(CameraGroups, EqualGroupsAreNoGroups) {
   scenarios::Scenario s = ideal_scenario();
