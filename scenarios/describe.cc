@@ -178,10 +178,10 @@ std::string world_text(const Scenario& scenario) {
     const Scenario alone = group_alone(scenario, group);
     const Stream* const stream = alone.scored_stream();
     if (stream == nullptr) break;
-    if (!scenario.cameras.groups.empty()) {
-      text += fmt::format(", {} {}", alone.cameras.count, alone.cameras.model);
-    }
-    text += fmt::format(", {} of {} x {} at {} Hz", to_text(stream->kind), stream->width,
+    text += scenario.cameras.groups.empty()
+                ? ", "
+                : fmt::format(", {} of {}: ", alone.cameras.count, alone.cameras.model);
+    text += fmt::format("{} of {} x {} at {} Hz", to_text(stream->kind), stream->width,
                         stream->height, alone.frame_rate_hz(*stream));
   }
   return text + ".";

@@ -114,8 +114,9 @@ TEST(CameraGroups, AGroupsModelHasWhatIsAskedOfIt) {
                         "acA1920-155um)"));
   EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/model", "webcam"}}),
               HasSubstr("found \"webcam\", allowed astra_plus"));
-  EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/model", "oak_4"}}),
-              HasSubstr("/cameras/groups/1/model=oak_4: found \"oak_4\", which has no sync mode "
+  EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/model", "raspberry_camera_v3"}}),
+              HasSubstr("/cameras/groups/1/model=raspberry_camera_v3: found "
+                        "\"raspberry_camera_v3\", which has no sync mode "
                         "\"slave\""));
   EXPECT_THAT(error_of_mixed({{"/cameras/groups/1/readout_ms", "3"}}),
               HasSubstr("/cameras/groups/1/readout_ms=3: found 3, allowed 0: the ace U "
