@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -172,6 +173,20 @@ void check_counts(const Scenario& scenario) {
                       scenario.cameras.count));
 }
 
+// Some pulses must be exposed by all cameras.
+void check_common_pulses(const Scenario& scenario) {
+  std::int64_t together = 1;
+  const std::vector<CameraGroup>& groups = scenario.cameras.groups;
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    together = std::lcm(together, groups[group].pulses_per_frame);
+    if (together <= scenario.timeline.frames) continue;
+    fail_at(scenario, fmt::format("/cameras/groups/{}/pulses_per_frame", group),
+            fmt::format("found {}, with which all cameras expose at one pulse in {}, allowed at "
+                        "least one of the {} pulses of /timeline/frames",
+                        groups[group].pulses_per_frame, together, scenario.timeline.frames));
+  }
+}
+
 // Controllers are filled in the order of a host's cameras, as sim/rig/cameras.h has them.
 void check_controllers(const Scenario& scenario) {
   const std::vector<std::size_t> groups = group_of_cameras(scenario.cameras);
@@ -241,6 +256,7 @@ void check_groups(const Scenario& scenario) {
   if (scenario.cameras.groups.empty()) return;
   check_what_groups_exclude(scenario);
   check_counts(scenario);
+  check_common_pulses(scenario);
   check_controllers(scenario);
   for (std::size_t group = 0; group < scenario.cameras.groups.size(); ++group) {
     const std::string pointer = fmt::format("/cameras/groups/{}", group);

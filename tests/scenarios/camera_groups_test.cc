@@ -64,6 +64,13 @@ TEST(CameraGroups, HoldAllCameras) {
                         "(/cameras/count)"));
 }
 
+TEST(CameraGroups, ExposeTogetherAtSomePulses) {
+  EXPECT_THAT(error_of_mixed({{"/cameras/groups/0/pulses_per_frame", "29"},
+                              {"/cameras/groups/1/pulses_per_frame", "31"}}),
+              HasSubstr("/cameras/groups/1/pulses_per_frame=31: found 31, with which all cameras "
+                        "expose at one pulse in 899, allowed at least one of the 600 pulses"));
+}
+
 TEST(CameraGroups, AControllerIsOfOneGroup) {
   EXPECT_THAT(error_of_mixed({{"/usb/cameras_per_controller", "2"}}), IsEmpty());
   EXPECT_THAT(error_of_mixed({{"/usb/cameras_per_controller", "2"},
