@@ -78,8 +78,11 @@ void play(const Capture& capture, simbench::RecordingSink& sink) {
 ScorerSetup setup_for(bool genlock, bool offline) {
   ScorerSetup setup;
   setup.genlock = genlock;
-  setup.make_estimator = [] { return simbench::make_regression(simbench::RegressionWindow{30}); };
-  if (offline) setup.make_second_estimator = [] { return simbench::make_offline_regression(); };
+  setup.make_estimator = [](std::size_t) {
+    return simbench::make_regression(simbench::RegressionWindow{30});
+  };
+  if (offline)
+    setup.make_second_estimator = [](std::size_t) { return simbench::make_offline_regression(); };
   setup.make_gatherer = [](const simbench::GatheringSetup& gathering) {
     return simbench::make_yoon2021_gatherer(gathering);
   };

@@ -78,7 +78,7 @@ void transfer(std::vector<Offer>& offers, UsbSharing sharing) {
 
 // How much later one camera's exposure ends than another's, from the same pulse.
 double exposure_spread_ms(const Cameras& cameras, double period_ms, Uniform& uniform) {
-  if (cameras.sync_mode != SyncMode::kGenlock) return 0;  // exposures end together
+  if (!cameras.begins_at_pulse()) return 0;  // exposures end together
   const AutoExposure& automatic = cameras.auto_exposure;
   const double part = uniform();
   return automatic.is_on() ? part * (automatic.max_ms - automatic.min_ms)
@@ -101,7 +101,7 @@ std::vector<Offer> offers_of_pulse(const Scenario& scenario, const Stream& strea
       const bool is_measured = &other == &stream;
       if (!is_measured && !(follows && cameras.follows_trigger(other))) continue;
       if (uniform() < cameras.drop_probability) continue;
-      const double rows_ms = cameras.sync_mode == SyncMode::kGenlock ? readout_ms(other) : 0;
+      const double rows_ms = cameras.begins_at_pulse() ? readout_ms(other) : 0;
       const double delay_ms = latency_ms(other) + late_ms;
       offers.push_back({.at_ms = exposed_ms + rows_ms + delay_ms,
                         .transfer_ms = transfer_ms(scenario, other),

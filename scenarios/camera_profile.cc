@@ -16,7 +16,7 @@ using nlohmann::json;
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ImageSize, width, height, focal_px, rates_hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamProfile, kind, format, shutter, readout_periods,
                                    bytes_per_pixel, sizes, source)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyncModeProfile, mode, triggered)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SyncModeProfile, mode, triggered, begins_at_pulse)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameControlProfile, adjust_frame, insert_frame, frame_length,
                                    start_at, source)
 

@@ -46,6 +46,9 @@ struct StreamProfile {
 struct SyncModeProfile {
   SyncMode mode{};
   std::vector<StreamKind> triggered;  // streams that follow the pulses
+  // Their exposures begin at the pulse, and wait for it without limit; else they end a mode period
+  // after it (genlock: always true of it, whatever this is).
+  bool begins_at_pulse = false;
 };
 
 struct StampProfile {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/camera_checks.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
 #include "scenarios/frame_control_checks.h"
@@ -17,7 +18,6 @@
 #include "scenarios/load_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/published_checks.h"
-#include "scenarios/pulse_window.h"
 #include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
 #include "scenarios/schema_walk.h"
@@ -392,119 +392,6 @@ void check_pipelines(const Scenario& scenario) {
   check_published(scenario);
 }
 
-void check_profile(const Scenario& scenario, const CameraProfile& camera,
-                   const std::string& pointer, const Stream& stream) {
-  const StreamProfile* profile = camera.stream(stream.kind);
-  if (profile == nullptr) {
-    std::vector<std::string_view> kinds;
-    for (const StreamProfile& each : camera.streams) kinds.push_back(to_text(each.kind));
-    fail_at(scenario, pointer + "/kind",
-            fmt::format("found {}, allowed {} (streams of the {})", to_text(stream.kind),
-                        fmt::join(kinds, ", "), camera.name));
-  }
-  const ImageSize* offered = profile->find_size(stream.width, stream.height);
-  if (offered == nullptr) {
-    std::vector<std::string> sizes;
-    for (const ImageSize& size : profile->sizes) {
-      sizes.push_back(fmt::format("{}x{}", size.width, size.height));
-    }
-    fail_at(scenario, pointer + "/width",
-            fmt::format("found {} {}x{}, allowed {} (profiles of the {})", to_text(stream.kind),
-                        stream.width, stream.height, fmt::join(sizes, ", "), camera.name));
-  }
-  const std::vector<double>& rates = offered->rates_hz;
-  if (std::find(rates.begin(), rates.end(), stream.mode_rate_hz) == rates.end()) {
-    fail_at(scenario, pointer + "/mode_rate_hz",
-            fmt::format("found {}, allowed {} (profiles of the {} for {} {}x{})",
-                        stream.mode_rate_hz, fmt::join(rates, ", "), camera.name,
-                        to_text(stream.kind), stream.width, stream.height));
-  }
-}
-
-void check_sync_mode(const Scenario& scenario, const CameraProfile& camera) {
-  const SyncMode mode = scenario.cameras.sync_mode;
-  if (camera.sync_mode(mode) != nullptr) return;
-  std::vector<std::string_view> modes;
-  for (const SyncModeProfile& each : camera.sync_modes) modes.push_back(to_text(each.mode));
-  fail_at(scenario, "/cameras/sync_mode",
-          fmt::format("found \"{}\", allowed \"{}\" (sync modes of the {})", to_text(mode),
-                      fmt::join(modes, "\", \""), camera.name));
-}
-
-const CameraProfile& checked_profile(const Scenario& scenario) {
-  const std::string& model = scenario.cameras.model;
-  if (const CameraProfile* camera = find_camera_profile(model)) return *camera;
-  std::vector<std::string> models;
-  for (const CameraProfile& each : camera_profiles()) models.push_back(each.model);
-  fail_at(scenario, "/cameras/model",
-          fmt::format("found \"{}\", allowed {} (simbench list cameras)", shown_text(model),
-                      fmt::join(models, ", ")));
-}
-
-// What helps against pulses that a mode is too slow for: a mode of that size that the pulses are
-// near, else a slower trigger; genlock where the camera has it.
-std::string help_against_fast_pulses(const CameraProfile& camera, const Stream& stream,
-                                     double rate_hz) {
-  std::vector<double> rates;
-  for (const double offered :
-       camera.stream(stream.kind)->find_size(stream.width, stream.height)->rates_hz) {
-    const PulseWindow window(offered);
-    if (!window.is_slower(rate_hz) && !window.is_faster(rate_hz)) rates.push_back(offered);
-  }
-  std::string help = rates.empty()
-                         ? fmt::format("no mode of {}x{} is as fast", stream.width, stream.height)
-                         : fmt::format("a mode of {} Hz would follow", fmt::join(rates, " or "));
-  if (camera.sync_mode(SyncMode::kGenlock) != nullptr) {
-    help += ", and genlock answers a part of any pulses";
-  }
-  return help;
-}
-
-// Slaves follow pulses close to their mode rate; what they do with faster ones is not documented
-// (docs/reference/d455.md section 2). An evaluated stream that runs free keeps its mode rate, which
-// must then be the evaluated rate.
-void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
-                     const std::string& pointer, const Stream& stream) {
-  const std::vector<double>& rates = camera.sync_rates_hz;
-  const SyncMode mode = scenario.cameras.sync_mode;
-  if (mode != SyncMode::kDefault && !rates.empty() &&
-      std::find(rates.begin(), rates.end(), stream.mode_rate_hz) == rates.end()) {
-    fail_at(scenario, pointer + "/mode_rate_hz",
-            fmt::format("found {}, allowed {} in sync mode \"{}\"", stream.mode_rate_hz,
-                        fmt::join(rates, ", "), to_text(mode)));
-  }
-  const bool follows_trigger = scenario.cameras.follows_trigger(stream);
-  if (!follows_trigger && stream.kind != scenario.evaluation.stream) return;
-  const double rate = scenario.trigger.pulse_rate_hz();
-  const PulseWindow window(stream.mode_rate_hz);
-  const bool is_faster = window.is_faster(rate);
-  if (!window.is_slower(rate) && !is_faster) return;
-  fail_at(
-      scenario, "/trigger/rate_hz",
-      fmt::format("found {:.6g} Hz, allowed {:.6g} to {:.6g} Hz in sync mode \"{}\" with a {} "
-                  "Hz mode{}",
-                  rate, window.slowest_hz, window.fastest_hz, to_text(mode), stream.mode_rate_hz,
-                  follows_trigger && is_faster
-                      ? ": what a slave does with faster pulses is not documented; " +
-                            help_against_fast_pulses(camera, stream, rate)
-                      : ""));
-}
-
-// The model and its sync mode, the sizes and rates of the streams.
-void check_rates(const Scenario& scenario) {
-  const Cameras& cameras = scenario.cameras;
-  const CameraProfile& camera = checked_profile(scenario);
-  check_sync_mode(scenario, camera);
-  for (std::size_t i = 0; i < cameras.streams.size(); ++i) {
-    const Stream& stream = cameras.streams[i];
-    const std::string pointer = fmt::format("/cameras/streams/{}", i);
-    check_profile(scenario, camera, pointer, stream);
-    if (cameras.sync_mode != SyncMode::kGenlock) {
-      check_full_rate(scenario, camera, pointer, stream);
-    }
-  }
-}
-
 constexpr double kFullCircleDeg = 360;
 
 // The depth stream's profile must have a focal length.
@@ -580,7 +467,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_io_load(scenario);
   check_load(scenario);
   check_streams(scenario);
-  check_rates(scenario);
+  check_camera_models(scenario);
   check_shutters(scenario);
   check_calibrations(scenario);
   check_auto_exposure(scenario);

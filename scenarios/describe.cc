@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/calibration.h"
+#include "scenarios/camera_groups.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/changes.h"
 #include "scenarios/document.h"
@@ -94,7 +95,7 @@ std::set<std::string> state_calibrations(const Scenario& scenario, ordered_json&
   };
   const std::vector<Stream>& streams = scenario.cameras.streams;
   for (std::size_t i = 0; i < streams.size(); ++i) {
-    if (streams[i].calibrated_delay_ms) continue;
+    if (streams[i].calibrated_delay_ms || !scenario.cameras.groups.empty()) continue;
     state(fmt::format("/cameras/streams/{}", i), "calibrated_delay_ms",
           calibrated_delay_ms(scenario, streams[i]));
   }
@@ -173,9 +174,15 @@ std::string world_text(const Scenario& scenario) {
       fmt::format("Cameras: {}, hosts: {}, frames: {}, sync mode {}, trigger at {} Hz",
                   scenario.cameras.count, scenario.hosts.count, scenario.timeline.frames,
                   to_text(scenario.cameras.sync_mode), scenario.trigger.rate_hz);
-  if (const Stream* const stream = scenario.scored_stream()) {
-    text += fmt::format(", {} of {} x {} at {} Hz", to_text(stream->kind), stream->width,
-                        stream->height, scenario.frame_rate_hz(*stream));
+  for (std::size_t group = 0; group < group_count(scenario.cameras); ++group) {
+    const Scenario alone = group_alone(scenario, group);
+    const Stream* const stream = alone.scored_stream();
+    if (stream == nullptr) break;
+    text += scenario.cameras.groups.empty()
+                ? ", "
+                : fmt::format(", {} of {}: ", alone.cameras.count, alone.cameras.model);
+    text += fmt::format("{} of {} x {} at {} Hz", to_text(stream->kind), stream->width,
+                        stream->height, alone.frame_rate_hz(*stream));
   }
   return text + ".";
 }

@@ -30,6 +30,16 @@ bool Cameras::follows_trigger(const Stream& stream) const {
   return camera->triggers(sync_mode, stream.kind);
 }
 
+bool Cameras::begins_at_pulse() const {
+  if (sync_mode == SyncMode::kGenlock) return true;
+  const CameraProfile* camera = find_camera_profile(model);
+  if (camera == nullptr) {
+    throw std::invalid_argument("no profile of camera model \"" + model + "\"");
+  }
+  const SyncModeProfile* mode = camera->sync_mode(sync_mode);
+  return mode != nullptr && mode->begins_at_pulse;
+}
+
 const char* PublishedFigure::number_name() const {
   if (value) return "value";
   return at_most ? "at_most" : "at_least";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenarios/builtin_files.h"
+#include "scenarios/camera_groups.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/frequency_limit.h"
 #include "scenarios/loader.h"
@@ -250,13 +251,25 @@ void warn_about_shutters(Lines& lines, const Scenario& scenario) {
   }
 }
 
+// What the busiest host's cameras send, in 1e6 bytes per second.
+double busiest_host_mb_per_s(const Scenario& scenario) {
+  std::vector<double> load(static_cast<std::size_t>(scenario.hosts.count));
+  for (std::size_t group = 0; group < group_count(scenario.cameras); ++group) {
+    const Scenario alone = group_alone(scenario, group);
+    const std::vector<std::size_t> counts = alone.cameras_by_host();
+    for (std::size_t host = 0; host < counts.size(); ++host) {
+      load[host] += camera_load_mb_per_s(alone) * static_cast<double>(counts[host]);
+    }
+  }
+  return *std::ranges::max_element(load);
+}
+
 // Capture traffic through the port of the busiest host.
 void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
   const Network& network = scenario.network;
   if (network.bandwidth_mbit_per_s == 0) return;
-  const double offered_mbit_per_s = camera_load_mb_per_s(scenario) * 8 *
-                                    static_cast<double>(most_cameras_on_a_host(scenario)) *
-                                    network.capture_traffic_share;
+  const double offered_mbit_per_s =
+      busiest_host_mb_per_s(scenario) * 8 * network.capture_traffic_share;
   if (offered_mbit_per_s <= network.bandwidth_mbit_per_s) return;
   warn(lines, "/network/capture_traffic_share",
        fmt::format("the frames of a host are {:.0f} Mbit/s on a link that carries {:g}: what "
@@ -408,13 +421,28 @@ void warn_about_studio(Lines& lines, const Scenario& scenario) {
   }
 }
 
+// What may cost frames, of each group of cameras.
+void warn_about_frames(Lines& lines, const Scenario& scenario) {
+  for (std::size_t group = 0; group < group_count(scenario.cameras); ++group) {
+    const Scenario alone = group_alone(scenario, group);
+    Lines own;
+    warn_about_usb(own, alone);
+    warn_about_reader(own, alone);
+    warn_about_pulses(own, alone);
+    warn_about_exposure(own, alone);
+    for (Warning& warning : own) {
+      if (!scenario.cameras.groups.empty()) {
+        warning.text = fmt::format("group {} of /cameras/groups: {}", group, warning.text);
+      }
+      lines.push_back(std::move(warning));
+    }
+  }
+}
+
 Lines all_warnings(const Scenario& scenario) {
   Lines lines;
-  warn_about_usb(lines, scenario);
+  warn_about_frames(lines, scenario);
   warn_about_traffic(lines, scenario);
-  warn_about_reader(lines, scenario);
-  warn_about_pulses(lines, scenario);
-  warn_about_exposure(lines, scenario);
   warn_about_shutters(lines, scenario);
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
@@ -442,10 +470,7 @@ std::vector<std::string> loss_reasons(const Scenario& scenario) {
   std::vector<std::string> reasons;
   if (scenario.cameras.streams.empty()) return reasons;  // of files: no world is stated
   Lines lines;
-  warn_about_usb(lines, scenario);
-  warn_about_reader(lines, scenario);
-  warn_about_pulses(lines, scenario);
-  warn_about_exposure(lines, scenario);
+  warn_about_frames(lines, scenario);
   for (const Warning& warning : lines) {
     if (warning.loses_pulses) reasons.push_back(warning.pointer + ": " + warning.text);
   }

@@ -27,11 +27,11 @@ class MixedBank final : public EstimatorBank {
 std::unique_ptr<EstimatorBank> DeviceTimeEstimator::bank(std::size_t) const { return nullptr; }
 
 std::unique_ptr<EstimatorBank> make_bank(const EstimatorFactory& make, std::size_t cameras) {
-  std::unique_ptr<DeviceTimeEstimator> fresh = make();
+  std::unique_ptr<DeviceTimeEstimator> fresh = make(0);
   if (auto bank = fresh->bank(cameras)) return bank;
   std::vector<std::unique_ptr<DeviceTimeEstimator>> estimators;
   estimators.push_back(std::move(fresh));
-  while (estimators.size() < cameras) estimators.push_back(make());
+  while (estimators.size() < cameras) estimators.push_back(make(estimators.size()));
   return std::make_unique<MixedBank>(std::move(estimators));
 }
 

@@ -15,7 +15,8 @@
 //
 // Any other estimator works too, at the price of a virtual call for each frame.
 //
-//   auto bank = make_bank([] { return make_regression(RegressionWindow{30}); }, /*cameras=*/18);
+//   auto bank = make_bank([](std::size_t) { return make_regression(RegressionWindow{30}); },
+//                         /*cameras=*/18);
 //   bank->stamp(cameras, frames, global);
 #pragma once
 
@@ -30,7 +31,8 @@
 
 namespace simbench {
 
-using EstimatorFactory = std::function<std::unique_ptr<DeviceTimeEstimator>()>;
+// Makes the estimator of this camera.
+using EstimatorFactory = std::function<std::unique_ptr<DeviceTimeEstimator>(std::size_t camera)>;
 
 class EstimatorBank {
  public:

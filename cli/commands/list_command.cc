@@ -158,8 +158,9 @@ std::string sync_text(const scenarios::CameraProfile& camera) {
     for (const scenarios::StreamKind kind : mode.triggered) triggered.push_back(to_text(kind));
     modes.push_back(triggered.empty()
                         ? fmt::format("{} (runs free)", to_text(mode.mode))
-                        : fmt::format("{} (the trigger drives {})", to_text(mode.mode),
-                                      fmt::join(triggered, " and ")));
+                        : fmt::format("{} (the trigger drives {}{})", to_text(mode.mode),
+                                      fmt::join(triggered, " and "),
+                                      mode.begins_at_pulse ? ", from the pulse on" : ""));
   }
   return reports::wrapped(fmt::format("sync modes: {}. {} [{}]", fmt::join(modes, ", "),
                                       camera.sync_wiring, camera.sync_source),

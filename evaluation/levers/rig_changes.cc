@@ -46,6 +46,7 @@ void add_exposures(const Scenario& scenario, std::vector<RigChange>& changes) {
                cameras.auto_exposure.step_interval_exponential_ms}},
              0),
       changes);
+  if (!cameras.groups.empty()) return;  // each may have an exposure of its own
   constexpr double kHalf = 0.5;
   add(fmt::format("exposures of {:.3g} ms in place of {:.3g} (half of the light)",
                   kHalf * cameras.exposure_ms, cameras.exposure_ms),
@@ -81,6 +82,7 @@ void add_usb(const Scenario& scenario, std::vector<RigChange>& changes) {
 
 // What the cameras are in, for a trigger of the same rate.
 void add_sync_modes(const Scenario& scenario, std::vector<RigChange>& changes) {
+  if (!scenario.cameras.groups.empty()) return;  // models with modes of their own
   const scenarios::Stream* const scored = scenario.scored_stream();
   const scenarios::CameraProfile* const profile =
       scenarios::find_camera_profile(scenario.cameras.model);

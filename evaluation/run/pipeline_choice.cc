@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/metrics.h"
 #include "scenarios/calibration.h"
+#include "scenarios/camera_groups.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -248,16 +250,28 @@ CalibratedDelays calibrated_delays(const Scenario& scenario) {
   return delays;
 }
 
+std::vector<CalibratedDelays> delays_of_groups(const Scenario& scenario) {
+  std::vector<CalibratedDelays> delays;
+  for (std::size_t group = 0; group < scenarios::group_count(scenario.cameras); ++group) {
+    delays.push_back(calibrated_delays(scenarios::group_alone(scenario, group)));
+  }
+  return delays;
+}
+
 Nanoseconds earlier_by_sdk(const Scenario& scenario) {
   const Nanoseconds quantum = from_ms(scenario.hosts.clock.arrival_quantum_ms);
   return quantum < kSdkResolution ? (kSdkResolution - quantum) / 2 : Nanoseconds(0);
 }
 
-// What the pipeline's device_time subtracts.
-CalibratedDelays delays_of(const Scenario& scenario, const PipelineChoice& choice) {
-  if (!choice.device_time_variants.calibrated) return {};
-  CalibratedDelays delays = choice.delays();
-  if (choice.device_time_variants.sdk) delays.arrival -= earlier_by_sdk(scenario);
+// What the pipeline's device_time subtracts, of each group of cameras.
+std::vector<CalibratedDelays> delays_of(const Scenario& scenario, const PipelineChoice& choice) {
+  if (!choice.device_time_variants.calibrated) {
+    return std::vector<CalibratedDelays>(scenarios::group_count(scenario.cameras));
+  }
+  std::vector<CalibratedDelays> delays = choice.delays();
+  for (CalibratedDelays& each : delays) {
+    if (choice.device_time_variants.sdk) each.arrival -= earlier_by_sdk(scenario);
+  }
   return delays;
 }
 
@@ -370,8 +384,8 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   check_published_figures(scenario);
   std::vector<PipelineChoice> all;
   std::vector<std::string> known;
-  const scenarios::Lazy<CalibratedDelays> delays(
-      [scenario] { return calibrated_delays(scenario); });
+  const scenarios::Lazy<std::vector<CalibratedDelays>> delays(
+      [scenario] { return delays_of_groups(scenario); });
   for (std::size_t index = 0; index < scenario.pipelines.size(); ++index) {
     all.push_back(choose(scenario, index));
     all.back().delays = delays;
@@ -399,6 +413,24 @@ const Scenario& scoring_scenario(const Scenario& scenario, const PipelineChoice&
   return choice.scored_in ? *choice.scored_in : scenario;
 }
 
+namespace {
+
+// Groups of cameras that answer different pulses.
+void count_unequal_rates(const Scenario& scenario, ScorerSetup& setup) {
+  for (const scenarios::CameraGroup& group : scenario.cameras.groups) {
+    setup.due_every = std::lcm(setup.due_every, group.pulses_per_frame);
+  }
+  if (setup.due_every == 1) return;
+  for (const std::size_t group : scenarios::group_of_cameras(scenario.cameras)) {
+    const scenarios::Scenario alone = scenarios::group_alone(scenario, group);
+    setup.pulses_per_frame_of_camera.push_back(
+        alone.pulses_per_passed_frame(*alone.scored_stream()) *
+        scenarios::pulses_per_frame(scenario.cameras, group));
+  }
+}
+
+}  // namespace
+
 ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
   ScorerSetup setup;
   setup.stream = scenario.evaluation.stream;
@@ -416,23 +448,26 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   if (const scenarios::Stream* scored = scenario.scored_stream()) {
     setup.pulses_per_frame = scenario.pulses_per_passed_frame(*scored);
   }
+  count_unequal_rates(scenario, setup);
   setup.make_gatherer = [chosen = choice.gathering](const GatheringSetup& gathering) {
     return chosen.make(gathering);
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.can_be_made()) {
     setup.make_estimator = [chosen = choice.device_time, variants = choice.device_time_variants,
-                            delays = delays_of(scenario, choice)] {
-      return make_variant(variants, chosen.make(), delays);
+                            groups = scenarios::group_of_cameras(scenario.cameras),
+                            delays = delays_of(scenario, choice)](std::size_t camera) {
+      const std::size_t group = delays.size() == 1 ? 0 : groups.at(camera);
+      return make_variant(variants, chosen.make(), delays[group]);
     };
   }
   const DeviceTimeEntry* offline = find_algorithm<DeviceTimeEntry>("regression_offline");
   if (choice.scores_offline && offline != nullptr &&
       scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
-    setup.make_second_estimator = [make = offline->make,
-                                   parameters = parameters_of(scenario, offline->info)] {
-      return make(parameters);
-    };
+    setup.make_second_estimator =
+        [make = offline->make, parameters = parameters_of(scenario, offline->info)](std::size_t) {
+          return make(parameters);
+        };
   }
   return setup;
 }

@@ -63,8 +63,9 @@ struct PipelineChoice {
   // The scenario that states how it is scored, where that is not the capture's: one that differs in
   // scoring alone (is_scoring_alone() in capture_groups.h). Null: the capture's.
   std::shared_ptr<const scenarios::Scenario> scored_in{};
-  // What a user of the scenario knows, for a device_time that subtracts it. Shared by all.
-  scenarios::Lazy<CalibratedDelays> delays{};
+  // What a user of the scenario knows, for a device_time that subtracts it, of each group of
+  // cameras (scenarios/camera_groups.h). Shared by all pipelines.
+  scenarios::Lazy<std::vector<CalibratedDelays>> delays{};
 
   // Whether no trigger reaches the cameras.
   bool is_steered() const { return !pipeline.capture_alignment.empty(); }

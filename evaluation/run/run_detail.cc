@@ -148,7 +148,7 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     companions_.resize(run_.cameras.size());
     for (std::size_t camera = 0; camera < run_.cameras.size(); ++camera) {
       run_.cameras[camera].host = layout.cameras[camera].host;
-      if (setup_.make_estimator) companions_[camera].from_start = setup_.make_estimator();
+      if (setup_.make_estimator) companions_[camera].from_start = setup_.make_estimator(camera);
     }
     ForwardingSink::on_start(layout);
   }
@@ -220,8 +220,8 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
       for (std::size_t i = 0; i < frames.size(); ++i) {
         if (companion.global[i]) frames[i].global_ms = from_zero_ms(*companion.global[i] + shift_);
       }
-      stamp_by(*make_online(), companion.samples, frames, &FrameDetail::online_ms);
-      stamp_by(*make_offline(), companion.samples, frames, &FrameDetail::offline_ms);
+      stamp_by(*make_online(camera), companion.samples, frames, &FrameDetail::online_ms);
+      stamp_by(*make_offline(camera), companion.samples, frames, &FrameDetail::offline_ms);
     }
   }
 

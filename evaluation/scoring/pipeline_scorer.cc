@@ -104,7 +104,7 @@ PipelineScorer::Capture::Capture(const ScorerSetup& setup, const RigLayout& layo
       gatherer_(setup.make_gatherer(gathering_of(setup, layout))),
       stamping_(layout, setup.make_estimator),
       table_(layout.first_pulse, layout.pulses, layout.cameras.size()),
-      account_(layout.first_pulse, layout.pulses, layout.cameras.size()),
+      account_(layout.first_pulse, layout.pulses, layout.cameras.size(), setup.due_every),
       uses_warm_up_(stamping_.stamps_warm_up() || gatherer_->from_first_frame()),
       host_errors_(layout.hosts),
       sessions_(layout.hosts) {
@@ -256,6 +256,7 @@ SeedScore PipelineScorer::Capture::finish() {
   scoring.median = setup_.median;
   scoring.period = period_of(layout_);
   scoring.pulses_per_frame = setup_.pulses_per_frame;
+  scoring.pulses_per_frame_of_source = setup_.pulses_per_frame_of_camera;
   scoring.hosts = layout_.hosts;
   for (const CameraLayout& camera : layout_.cameras) scoring.host_of_source.push_back(camera.host);
   score_pulses(table_, scoring, score);

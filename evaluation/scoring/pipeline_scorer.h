@@ -51,8 +51,10 @@ struct ScorerSetup {
   bool genlock = false;                                   // sensor stamps give the order of frames
   double gathering_interval_periods = 0.5;                // T_int
   std::optional<std::uint32_t> gathering_queue_frames{};  // empty: the policy's own
-  std::int64_t pulses_per_frame = 1;       // a camera exposes at one of so many pulses
-  EstimatorFactory make_estimator;         // empty: the oracle, the true time on the own host
+  std::int64_t pulses_per_frame = 1;  // a camera exposes at one of so many pulses
+  std::vector<std::int64_t> pulses_per_frame_of_camera{};  // where they differ; else empty
+  std::int64_t due_every = 1;       // all cameras are to expose at each pulse of such a number
+  EstimatorFactory make_estimator;  // empty: the oracle, the true time on the own host
   EstimatorFactory make_second_estimator;  // for SeedScore::offline_amd_ms; empty: none
   GathererFactory make_gatherer;
   bool gatherer_needs_pulses = false;  // the oracle of gathering

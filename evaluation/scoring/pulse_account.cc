@@ -10,8 +10,10 @@ constexpr std::int64_t kMostLostAtTheEnd = 2;
 
 }  // namespace
 
-PulseAccount::PulseAccount(std::int64_t first_pulse, std::int64_t pulses, std::size_t cameras)
+PulseAccount::PulseAccount(std::int64_t first_pulse, std::int64_t pulses, std::size_t cameras,
+                           std::int64_t due_every)
     : first_pulse_(first_pulse),
+      due_every_(due_every),
       pulses_(static_cast<std::size_t>(pulses)),
       ends_(cameras),
       frames_(pulses_ * cameras, kNoFrame) {}
@@ -73,8 +75,13 @@ void PulseAccount::add_to(SetCounts& counts) const {
       go_on({end, last ? last->counter + 1 : 0});
     }
   }
-  counts.due_pulses = static_cast<std::int64_t>(pulses_);
-  counts.exposed_pulses = std::ranges::count(exposed, true);
+  counts.due_pulses = 0;
+  counts.exposed_pulses = 0;
+  for (std::size_t row = 0; row < pulses_; ++row) {
+    if ((first_pulse_ + static_cast<std::int64_t>(row)) % due_every_ != 0) continue;
+    ++counts.due_pulses;
+    if (exposed[row]) ++counts.exposed_pulses;
+  }
 }
 
 }  // namespace simbench::evaluation

@@ -3,7 +3,7 @@
 // Scores are over pulses that all cameras delivered, so where half of the pulses are missing they
 // look as if none were. This counts from what was due:
 //
-//   due        the evaluated pulses
+//   due        the evaluated pulses, of these such as all cameras are to expose
 //   exposed    those of them that every camera exposed
 //   delivered  those of which every camera delivered its frame (SetCounts::complete_pulses)
 //   whole      those that gathering found whole (SetCounts::pure)
@@ -32,7 +32,9 @@ namespace simbench::evaluation {
 
 class PulseAccount {
  public:
-  PulseAccount(std::int64_t first_pulse, std::int64_t pulses, std::size_t cameras);
+  // Those pulses are due whose number is a multiple of `due_every`.
+  PulseAccount(std::int64_t first_pulse, std::int64_t pulses, std::size_t cameras,
+               std::int64_t due_every = 1);
 
   // A delivered frame, in any order; also of the warm-up and behind the evaluated pulses, whose
   // counters bound the gaps at both ends.
@@ -56,6 +58,7 @@ class PulseAccount {
   void take_out(const Frame& last, const Frame& next, std::vector<bool>& exposed) const;
 
   std::int64_t first_pulse_;
+  std::int64_t due_every_;
   std::size_t pulses_;
   std::vector<Ends> ends_;             // by camera
   std::vector<std::uint32_t> frames_;  // by pulse of each camera: 1 + its counter; 0: none

@@ -123,17 +123,19 @@ std::int64_t exposures_of(const PulseTable& table, std::size_t source,
   return last < 0 ? rows / pulses_per_frame : exposures + (rows - 1 - last) / pulses_per_frame;
 }
 
-std::int64_t exposures_due(const PulseTable& table, std::int64_t pulses_per_frame) {
-  if (pulses_per_frame == 1) return static_cast<std::int64_t>(table.rows() * table.sources());
+std::int64_t exposures_due(const PulseTable& table, const PulseScoring& scoring) {
+  const std::vector<std::int64_t>& of_source = scoring.pulses_per_frame_of_source;
   std::int64_t expected = 0;
   for (std::size_t source = 0; source < table.sources(); ++source) {
-    expected += exposures_of(table, source, pulses_per_frame);
+    const std::int64_t pulses = of_source.empty() ? scoring.pulses_per_frame : of_source[source];
+    expected +=
+        pulses == 1 ? static_cast<std::int64_t>(table.rows()) : exposures_of(table, source, pulses);
   }
   return expected;
 }
 
-void count_frames(const PulseTable& table, std::int64_t pulses_per_frame, FrameCounts& frames) {
-  frames.expected = exposures_due(table, pulses_per_frame);
+void count_frames(const PulseTable& table, const PulseScoring& scoring, FrameCounts& frames) {
+  frames.expected = exposures_due(table, scoring);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     frames.delivered += static_cast<std::int64_t>(table.delivered(row));
   }
@@ -181,7 +183,7 @@ std::vector<double> HostErrors::signed_means_ms() const {
 }
 
 void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score) {
-  count_frames(table, scoring.pulses_per_frame, score.frames);
+  count_frames(table, scoring, score.frames);
   score_errors(table, score);
 
   HostSpreads hosts(scoring);

@@ -283,6 +283,12 @@ void check_rig_fits(const Rig& rig, const Scenario& scenario) {
                      counted(rig.hosts.size(), "host"), scenario.hosts.count, scenario.name));
   }
   check_cameras(rig, scenario);
+  if (!scenario.cameras.groups.empty()) {
+    fail(rig, "/hosts",
+         fmt::format("found a rig for scenario {}, which has /cameras/groups, allowed scenarios of "
+                     "one camera model: a node sets all cameras alike",
+                     scenario.name));
+  }
   if (waits_for_trigger(scenario.cameras.sync_mode) && !rig.trigger) {
     fail(rig, "/trigger",
          fmt::format("found nothing, allowed \"manual\" or {{\"on_command\": ..., \"off_command\": "

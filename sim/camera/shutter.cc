@@ -41,7 +41,8 @@ std::optional<Exposure> Shutter::on_pulse(TrueTime at, std::int64_t pulse) {
   }
   const TrueTime start = at + settings_.trigger_to_exposure;
   const TrueTime end = start + settings_.exposure + settings_.readout;
-  ignore_until_ = std::max(at + periods(2.0 * unguarded), end);
+  const double ignored_periods = settings_.mode == ShutterMode::kGenlock ? 2.0 : 1.0;
+  ignore_until_ = std::max(at + periods(ignored_periods * unguarded), end);
   return Exposure{pulse, start, end};
 }
 

@@ -10,6 +10,8 @@
 //    period less the guard, or than the exposure lasts, are ignored: no two exposures of a row
 //    overlap. Without pulses the stream runs free after a while, at its
 //    own mode rate; the next pulse takes over again.
+//  - triggered (a slave whose profile says that exposures begin at the pulse): as genlock, but
+//    pulses are ignored for one mode period less the guard, and while the exposure lasts.
 //  - free-running (default and master mode, and streams the mode does not synchronise): exposures
 //    end at a fixed phase of the camera's own mode period; one that is longer takes several.
 //
@@ -35,7 +37,7 @@ namespace simbench::sim {
 
 inline constexpr std::int64_t kNoPulse = -1;
 
-enum class ShutterMode : std::uint8_t { kFreeRunning, kSlave, kGenlock };
+enum class ShutterMode : std::uint8_t { kFreeRunning, kSlave, kTriggered, kGenlock };
 
 struct ShutterSettings {
   ShutterMode mode = ShutterMode::kFreeRunning;

@@ -41,8 +41,8 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
       slots_(evaluated_slots(scenario)),
       parts_(steering == Steering::kByControls ? kSteeredParts : 1),
       end_slot_(slots_.last + (has_steered_sensors(scenario, steering) ? kMoreSlots : 0)),
+      kinds_(static_cast<std::uint32_t>(scenario.cameras.streams.size())),
       unstable_start_(from_ms(scenario.cameras.unstable_start_ms)),
-      stamp_noise_ns_(scenario.cameras.sensor_stamp_jitter_sigma_us * 1e3),
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       cameras_(scenario, seed, start, steering),
       camera_faults_(scenario.faults),
@@ -64,10 +64,7 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
 // Cameras are numbered host by host, and so are controllers.
 void CameraWorld::make_hosts() {
   for (UsbController& controller : cameras_.make_controllers()) {
-    buses_.push_back({.controller = std::move(controller), .offers = {}});
-  }
-  for (std::uint32_t kind = 0; kind < scenario_.cameras.streams.size(); ++kind) {
-    transfer_ns_of_kind_.push_back(cameras_.stream(kind).transfer_ns);
+    buses_.push_back({.controller = std::move(controller), .offers = {}, .first_stream = 0});
   }
   const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
   hosts_.reserve(hosts);
@@ -89,6 +86,7 @@ void CameraWorld::make_hosts() {
       host.first_bus = stream.controller;
     }
     host.end_stream = id + 1;
+    if (stream.index_on_controller == 0) buses_[stream.controller].first_stream = id;
     host.end_bus = stream.controller + 1;
   }
 }
@@ -183,7 +181,7 @@ std::optional<ObservedPulse> CameraWorld::begin_slot() {
 void CameraWorld::expose_by_pulse(const HostSide& host, const ObservedPulse& pulse) {
   for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
     SimStream& stream = cameras_.stream(id);
-    if (stream.runs_free()) continue;
+    if (stream.runs_free() || pulse.pulse % stream.pulses_per_frame != 0) continue;
     const TrueTime at_camera = pulse.at + trigger_.delay_to(stream.camera);
     stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
     const auto exposure = stream.shutter.on_pulse(at_camera, pulse.pulse);
@@ -194,8 +192,7 @@ void CameraWorld::expose_by_pulse(const HostSide& host, const ObservedPulse& pul
 void CameraWorld::expose_by_timers(HostSide& host, TrueTime before) {
   if (host.next_timer >= before) return;
   host.next_timer = TrueTime::max();
-  const auto kinds = static_cast<std::uint32_t>(transfer_ns_of_kind_.size());
-  for (std::uint32_t first = host.first_stream; first < host.end_stream; first += kinds) {
+  for (std::uint32_t first = host.first_stream; first < host.end_stream; first += kinds_) {
     for (;; ++events_) {
       const std::uint32_t id = next_timer(first);
       SimStream& stream = cameras_.stream(id);
@@ -213,7 +210,7 @@ void CameraWorld::expose_by_timers(HostSide& host, TrueTime before) {
 // The stream with the earliest timer, of the camera whose first stream that is.
 std::uint32_t CameraWorld::next_timer(std::uint32_t first) const {
   std::uint32_t next = first;
-  for (std::uint32_t id = first + 1; id < first + transfer_ns_of_kind_.size(); ++id) {
+  for (std::uint32_t id = first + 1; id < first + kinds_; ++id) {
     const TrueTime timer = cameras_.stream(id).next_timer();
     if (timer < cameras_.stream(next).next_timer()) next = id;
   }
@@ -232,7 +229,7 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
   SimStream& stream = cameras_.stream(stream_id);
   const scenarios::Cameras& cameras = scenario_.cameras;
   const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
-  const double stamp_noise_ns = stream.stamp_noise.normal(stamp_noise_ns_);
+  const double stamp_noise_ns = stream.stamp_noise.normal(stream.stamp_noise_sigma_ns);
   const Exposure exposure = with_unsteady_start(stream, planned);
   if (camera_faults_.vanished(stream.camera, exposure.start)) return;
 
@@ -304,12 +301,11 @@ bool CameraWorld::is_each_stream_once(const std::vector<Step>& offers) {
 auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before)
     -> std::vector<Step>::iterator {
   for (; next != bus.offers.end() && next->at < before; ++next) {
-    const std::size_t kind = next->place % transfer_ns_of_kind_.size();
+    const SimStream& alike = cameras_.stream(bus.first_stream + next->place % kinds_);
     const Nanoseconds at = next->at.time_since_epoch();
-    const Nanoseconds latest = cameras_.stream(static_cast<std::uint32_t>(kind)).latest(at);
-    const TrueTime done(
-        bus.controller.pass(at, next->place, transfer_ns_of_kind_[kind],
-                            std::min(before.time_since_epoch() - Nanoseconds(1), latest)));
+    const TrueTime done(bus.controller.pass(
+        at, next->place, alike.transfer_ns,
+        std::min(before.time_since_epoch() - Nanoseconds(1), alike.latest(at))));
     if (done == TrueTime::max()) break;
     transferred_.push_back(step(done, done, next->frame));
   }

@@ -162,6 +162,7 @@ class CameraWorld {
   struct Bus {
     UsbController controller;
     std::vector<Step> offers;
+    std::uint32_t first_stream = 0;  // of the first camera; others of its kind are alike
   };
   struct HostSide {
     HostJitter jitter;  // of all of its frames
@@ -208,13 +209,12 @@ class CameraWorld {
   EvaluatedSlots slots_;
   int parts_;              // of a period
   std::int64_t end_slot_;  // the last one
+  std::uint32_t kinds_;    // streams of a camera
   Nanoseconds unstable_start_;
-  double stamp_noise_ns_;  // sigma
   TriggerTree trigger_;
   SimCameras cameras_;
   CameraFaults camera_faults_;
   std::vector<Bus> buses_;
-  std::vector<double> transfer_ns_of_kind_;  // by the number of the camera's stream
   std::vector<HostSide> hosts_;
   Slots<FrameInFlight> frames_;
   std::vector<Step> transferred_;     // of one host

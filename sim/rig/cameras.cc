@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "scenarios/camera_groups.h"
 #include "scenarios/frame_limits.h"
 #include "sim/host/host_group.h"
 
@@ -22,11 +23,19 @@ Nanoseconds hold_time(const scenarios::Usb& usb, const scenarios::Stream& stream
 
 ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Stream& stream) {
   if (!cameras.follows_trigger(stream)) return ShutterMode::kFreeRunning;
-  return cameras.sync_mode == scenarios::SyncMode::kGenlock ? ShutterMode::kGenlock
-                                                            : ShutterMode::kSlave;
+  if (cameras.sync_mode == scenarios::SyncMode::kGenlock) return ShutterMode::kGenlock;
+  return cameras.begins_at_pulse() ? ShutterMode::kTriggered : ShutterMode::kSlave;
 }
 
 }  // namespace
+
+CameraKinds::CameraKinds(const scenarios::Cameras& cameras)
+    : group_of_camera_(scenarios::group_of_cameras(cameras)) {
+  for (std::size_t group = 0; group < scenarios::group_count(cameras); ++group) {
+    groups_.push_back({.cameras = scenarios::cameras_of_group(cameras, group),
+                       .pulses_per_frame = scenarios::pulses_per_frame(cameras, group)});
+  }
+}
 
 Nanoseconds start_delay(const scenarios::Scenario& scenario, std::uint64_t seed,
                         std::size_t camera) {
@@ -37,10 +46,10 @@ Nanoseconds start_delay(const scenarios::Scenario& scenario, std::uint64_t seed,
 
 namespace {
 
-// Its oscillator in a capture that starts at `start`.
-OscillatorModel camera_oscillator(const scenarios::Scenario& scenario, std::uint64_t seed,
+// Its oscillator in a capture that starts at `start`; `cameras` is of its group.
+OscillatorModel camera_oscillator(const scenarios::Scenario& scenario,
+                                  const scenarios::Cameras& cameras, std::uint64_t seed,
                                   std::size_t camera, TrueTime start) {
-  const scenarios::Cameras& cameras = scenario.cameras;
   OscillatorModel oscillator(cameras.oscillator, seed,
                              "camera/oscillator/" + std::to_string(camera),
                              start + start_delay(scenario, seed, camera));
@@ -54,14 +63,14 @@ OscillatorModel camera_oscillator(const scenarios::Scenario& scenario, std::uint
 
 std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std::uint64_t seed,
                                        TrueTime start) {
-  const scenarios::Cameras& cameras = scenario.cameras;
-  const auto count = static_cast<std::size_t>(cameras.count);
+  const CameraKinds kinds(scenario.cameras);
+  const auto count = static_cast<std::size_t>(scenario.cameras.count);
   std::vector<DeviceClock> clocks;
   clocks.reserve(count);
   for (std::size_t camera = 0; camera < count; ++camera) {
     RandomStream epoch(seed, "camera/epoch", camera);
-    clocks.emplace_back(camera_oscillator(scenario, seed, camera, start),
-                        epoch.uniform(0, cameras.clock_epoch_max_ms), start);
+    clocks.emplace_back(camera_oscillator(scenario, kinds.of(camera), seed, camera, start),
+                        epoch.uniform(0, scenario.cameras.clock_epoch_max_ms), start);
   }
   return clocks;
 }
@@ -74,7 +83,7 @@ bool has_steered_sensors(const scenarios::Scenario& scenario, Steering steering)
 
 SimCameras::SimCameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
                        Steering steering)
-    : scenario_(scenario), seed_(seed) {
+    : scenario_(scenario), kinds_(scenario.cameras), seed_(seed) {
   const auto count = static_cast<std::size_t>(scenario_.cameras.count);
   const std::size_t kinds = scenario_.cameras.streams.size();
   const auto per_controller = static_cast<std::uint32_t>(scenario_.usb.cameras_per_controller);
@@ -124,14 +133,15 @@ void SimCameras::add_sensors(TrueTime start, Steering steering) {
         settings,
         model.sensor_clock == scenarios::ClockOwner::kHost
             ? host_oscillator(scenario_.hosts, seed_, stream.host)
-            : camera_oscillator(scenario_, seed_, stream.camera, start),
+            : camera_oscillator(scenario_, scenario_.cameras, seed_, stream.camera, start),
         RandomStream(seed_, "camera/sensor", stream.camera), stream.started, start);
   }
 }
 
 SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
                                   std::size_t which) const {
-  const scenarios::Stream& profile = scenario_.cameras.streams[which];
+  const scenarios::Cameras& cameras = kinds_.of(camera);
+  const scenarios::Stream& profile = cameras.streams[which];
   const ShutterSettings shutter = shutter_settings(clock, camera, profile);
   const scenarios::CalibrationError& error = scenario_.cameras.calibration;
   const double bytes = profile.image_bytes();
@@ -150,6 +160,7 @@ SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
           .controller = 0,
           .index_on_controller = 0,
           .kind = profile.kind,
+          .pulses_per_frame = kinds_.pulses_per_frame(camera),
           .bytes = bytes,
           .transfer_ns = bytes / bytes_per_ns(scenario_.usb),
           .latency = from_ms(
@@ -164,6 +175,7 @@ SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
           .shutter = Shutter(shutter, started),
           .sensor = nullptr,
           .delays = FrameDelays(scenario_.usb, seed_, id),
+          .stamp_noise_sigma_ns = cameras.sensor_stamp_jitter_sigma_us * 1e3,
           .stamp_noise = RandomStream(seed_, "camera/stamp_noise", id),
           .loss = RandomStream(seed_, "camera/loss", id),
           .unsteadiness = RandomStream(seed_, "camera/unsteadiness", id)};
@@ -171,7 +183,7 @@ SimStream SimCameras::make_stream(const DeviceClock& clock, std::size_t camera,
 
 ShutterSettings SimCameras::shutter_settings(const DeviceClock& clock, std::size_t camera,
                                              const scenarios::Stream& profile) const {
-  const scenarios::Cameras& cameras = scenario_.cameras;
+  const scenarios::Cameras& cameras = kinds_.of(camera);
   return {.mode = shutter_mode(cameras, profile),
           .mode_period_ns = 1e9 / profile.mode_rate_hz * clock.true_per_device(),
           .exposure = first_exposure(camera),
@@ -183,7 +195,7 @@ ShutterSettings SimCameras::shutter_settings(const DeviceClock& clock, std::size
 }
 
 Nanoseconds SimCameras::first_exposure(std::size_t camera) const {
-  const scenarios::Cameras& cameras = scenario_.cameras;
+  const scenarios::Cameras& cameras = kinds_.of(camera);
   const auto host =
       static_cast<std::uint64_t>(scenario_.host_of(static_cast<std::int64_t>(camera)));
   RandomStream of_camera(seed_, "camera/exposure", camera);

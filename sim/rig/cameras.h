@@ -44,16 +44,18 @@ struct SimStream {
   std::uint32_t controller;  // counted over all hosts
   std::uint32_t index_on_controller;
   StreamKind kind;
-  double bytes;         // of a frame
-  double transfer_ns;   // of a frame that is alone on the bus
-  Nanoseconds latency;  // from the end of the exposure to the offer to the bus
-  Nanoseconds hold;     // so long after its offer a frame may be transferred
-  Nanoseconds readout;  // of a rolling shutter
-  double late_ns;       // delivered later than a camera of the model is (may be negative)
-  TrueTime started;     // to stream
+  std::int64_t pulses_per_frame;  // it gets one of so many
+  double bytes;                   // of a frame
+  double transfer_ns;             // of a frame that is alone on the bus
+  Nanoseconds latency;            // from the end of the exposure to the offer to the bus
+  Nanoseconds hold;               // so long after its offer a frame may be transferred
+  Nanoseconds readout;            // of a rolling shutter
+  double late_ns;                 // delivered later than a camera of the model is (may be negative)
+  TrueTime started;               // to stream
   Shutter shutter;
   std::unique_ptr<SteeredSensor> sensor;  // in place of the shutter, where no trigger reaches it
   FrameDelays delays;
+  double stamp_noise_sigma_ns;
   RandomStream stamp_noise;
   RandomStream loss;
   RandomStream unsteadiness;
@@ -72,6 +74,24 @@ struct SimStream {
     shutter.set_exposure(exposure);
     return shutter.on_timer(now);
   }
+};
+
+// What is true of each camera, by its group (scenarios/camera_groups.h).
+class CameraKinds {
+ public:
+  explicit CameraKinds(const scenarios::Cameras& cameras);
+  const scenarios::Cameras& of(std::size_t camera) const { return group(camera).cameras; }
+  std::int64_t pulses_per_frame(std::size_t camera) const { return group(camera).pulses_per_frame; }
+
+ private:
+  struct Group {
+    scenarios::Cameras cameras;
+    std::int64_t pulses_per_frame = 1;
+  };
+  const Group& group(std::size_t camera) const { return groups_[group_of_camera_[camera]]; }
+
+  std::vector<std::size_t> group_of_camera_;
+  std::vector<Group> groups_;
 };
 
 // How long after the capture's start this camera starts.
@@ -111,6 +131,7 @@ class SimCameras {
   Nanoseconds first_exposure(std::size_t camera) const;
 
   const scenarios::Scenario& scenario_;
+  CameraKinds kinds_;
   std::uint64_t seed_;
   std::uint32_t controllers_ = 0;
   std::vector<AutoExposureLoop> exposures_;

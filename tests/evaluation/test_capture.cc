@@ -57,7 +57,7 @@ void TestCapture::deliver(std::uint32_t camera, std::int64_t pulse, RecordingSin
 
 ScorerSetup arrival_setup() {
   ScorerSetup setup;
-  setup.make_estimator = [] { return make_raw_arrival(); };
+  setup.make_estimator = [](std::size_t) { return make_raw_arrival(); };
   setup.make_gatherer = [](const GatheringSetup& gathering) {
     return make_yoon2021_gatherer(gathering);
   };

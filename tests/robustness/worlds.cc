@@ -40,14 +40,19 @@ double number_in(const ordered_json& schema, double good, Random& random) {
   return std::clamp(value, low, high);
 }
 
+// "integer", or that among others, as of a number that may be null.
+bool is_whole(const ordered_json& type) {
+  return type.is_array() ? std::ranges::count(type, "integer") > 0 : type == "integer";
+}
+
 json value_in(const ordered_json& schema, const json& good, Random& random) {
   if (const auto words = schema.find("enum"); words != schema.end()) {
     return (*words)[random.below(words->size())];
   }
   if (good.is_boolean()) return !good.get<bool>();
   const double number = number_in(schema, good.get<double>(), random);
-  if (schema.value("type", "") == "integer") return static_cast<std::int64_t>(std::llround(number));
-  return number;
+  if (!is_whole(schema.at("type"))) return number;
+  return static_cast<std::int64_t>(std::llround(number));
 }
 
 }  // namespace
@@ -58,7 +63,7 @@ Worlds::Worlds() {
         "9cam_3host_30fps_azure_kinect", "leaderboard_lan", "leaderboard_gathering",
         "18cam_6host_45fps_lan_hardware_clocks", "18cam_6host_45fps_wander_and_ramp",
         "18cam_6host_45fps_clock_step_during_capture", "18cam_6host_45fps_auto_exposure",
-        "6host_star", "6host_lan_day"}) {
+        "6host_star", "6host_lan_day", "6cam_mixed_rates_60fps"}) {
     const scenarios::Scenario scenario = scenarios::load_scenario(name);
     World& world = worlds_.emplace_back(World{.name = name, .pipelines = {}, .parameters = {}});
     for (const auto& pipeline : scenario.pipelines) world.pipelines.push_back(pipeline.name);

@@ -35,8 +35,11 @@ TEST(CameraProfiles, AllAreThereInOrder) {
   std::vector<std::string> models;
   for (const CameraProfile& camera : camera_profiles()) models.push_back(camera.model);
   EXPECT_THAT(models,
-              ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "esp32_camera",
-                          "gige_ace", "l515", "oak_4", "pixel_phone", "raspberry_camera_v3"));
+              ElementsAre("astra_plus", "astra_s", "azure_kinect", "basler_aca1440_220uc",
+                          "basler_aca1440_73gm", "basler_aca1920_155um", "basler_aca2040_55uc",
+                          "d435", "d455", "esp32_camera", "flir_bfs_pge_31s4", "flir_bfs_u3_16s2",
+                          "flir_bfs_u3_31s4", "gige_ace", "l515", "oak_4", "pixel_phone",
+                          "raspberry_camera_v3", "raspberry_hq"));
 }
 
 TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {

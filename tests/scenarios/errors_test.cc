@@ -285,8 +285,10 @@ TEST(Checks, Profiles) {
 TEST(Checks, CameraModels) {
   EXPECT_EQ(error_of_set("/cameras/model", "d999"),
             "--set /cameras/model=d999: found \"d999\", allowed astra_plus, astra_s, azure_kinect, "
-            "d435, d455, esp32_camera, gige_ace, l515, oak_4, pixel_phone, raspberry_camera_v3 "
-            "(simbench list cameras)");
+            "basler_aca1440_220uc, basler_aca1440_73gm, basler_aca1920_155um, basler_aca2040_55uc, "
+            "d435, d455, esp32_camera, flir_bfs_pge_31s4, flir_bfs_u3_16s2, flir_bfs_u3_31s4, "
+            "gige_ace, l515, oak_4, pixel_phone, raspberry_camera_v3, raspberry_hq (simbench list "
+            "cameras)");
   EXPECT_EQ(
       error_of_set("/cameras/model", "azure_kinect"),
       place_in_base("/cameras/sync_mode") +

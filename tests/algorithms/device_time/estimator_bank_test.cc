@@ -49,11 +49,11 @@ INSTANTIATE_TEST_SUITE_P(Registered, EveryBank, ::testing::ValuesIn(registered_e
 TEST_P(EveryBank, StampsBlocksAsItsEstimatorsDoAlone) {
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Frames frames(seed);
-    const EstimatorFactory make = [] { return make_registered(GetParam()); };
+    const EstimatorFactory make = [](std::size_t) { return make_registered(GetParam()); };
     const auto bank = make_bank(make, kBankCameras);
     std::vector<std::unique_ptr<DeviceTimeEstimator>> alone;
     for (std::size_t camera = 0; camera < kBankCameras; ++camera) {
-      alone.push_back(make());
+      alone.push_back(make(camera));
       if (!bank->at(camera).offline()) continue;
       bank->at(camera).learn(frames.of(camera));
       alone.back()->learn(frames.of(camera));
@@ -90,7 +90,7 @@ TEST(EstimatorBank, IsMadeOfAnyEstimator) {
     std::int64_t number_;
   };
   std::int64_t made = 0;
-  const auto bank = make_bank([&] { return std::make_unique<Numbered>(made++); }, 4);
+  const auto bank = make_bank([&](std::size_t) { return std::make_unique<Numbered>(made++); }, 4);
   EXPECT_EQ(made, 4);
   const std::vector<std::uint32_t> cameras = {3, 0, 3};
   std::vector<GlobalTime> stamps(3);

@@ -73,7 +73,7 @@ std::string error_of(const Scenario& scenario, const std::vector<std::string>& n
 
 double stamp_ms(const Scenario& scenario) {
   const PipelineChoice choice = choose_pipelines(scenario, {})[0];
-  return to_ms(scorer_setup(scenario, choice).make_estimator()->stamp({}).time_since_epoch());
+  return to_ms(scorer_setup(scenario, choice).make_estimator(0)->stamp({}).time_since_epoch());
 }
 
 TEST(PipelineChoiceTest, ParametersComeFromFamilyThenName) {

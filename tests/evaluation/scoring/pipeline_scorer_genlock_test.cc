@@ -16,7 +16,7 @@ using ::testing::IsNan;
 ScorerSetup genlock_setup() {
   ScorerSetup setup;
   setup.genlock = true;
-  setup.make_estimator = [] { return make_sensor_normalised(); };
+  setup.make_estimator = [](std::size_t) { return make_sensor_normalised(); };
   setup.make_gatherer = [](const GatheringSetup& gathering) {
     return make_genlock_gatherer(gathering, GenlockOrder::Variant::kReanchored);
   };

@@ -161,7 +161,9 @@ TEST(PipelineScorerTest, EstimatorsBeginAfterTheWarmUpUnlessRelative) {
   for (const bool relative : {false, true}) {
     std::vector<DeviceSample> seen;
     ScorerSetup setup = arrival_setup();
-    setup.make_estimator = [&] { return std::make_unique<SpyEstimator>(seen, relative); };
+    setup.make_estimator = [&](std::size_t) {
+      return std::make_unique<SpyEstimator>(seen, relative);
+    };
     score(TestCapture(1, 1), setup);
     EXPECT_EQ(seen.size(), relative ? 13U : 10U);
     const std::int64_t first_pulse = relative ? 0 : 3;
@@ -172,7 +174,7 @@ TEST(PipelineScorerTest, EstimatorsBeginAfterTheWarmUpUnlessRelative) {
 TEST(PipelineScorerTest, UnwrapsTheDeviceClock) {
   std::vector<DeviceSample> seen;
   ScorerSetup setup = arrival_setup();
-  setup.make_estimator = [&] { return std::make_unique<SpyEstimator>(seen, false); };
+  setup.make_estimator = [&](std::size_t) { return std::make_unique<SpyEstimator>(seen, false); };
   TestCapture capture(1, 1);
   // The register wraps between pulses 5 and 6.
   const std::int64_t wrap_ns = (std::int64_t{1} << 32) * 1000;
@@ -226,7 +228,7 @@ TEST(PipelineScorerTest, OracleNeedsTruth) {
 TEST(PipelineScorerTest, FreeRunningFramesArePartOfTheStreamButNotScored) {
   std::vector<DeviceSample> seen;
   ScorerSetup setup = arrival_setup();
-  setup.make_estimator = [&] { return std::make_unique<SpyEstimator>(seen, false); };
+  setup.make_estimator = [&](std::size_t) { return std::make_unique<SpyEstimator>(seen, false); };
   PipelineScorer scorer(setup);
   TestCapture capture(1, 1);
   scorer.on_start(capture.layout);
@@ -354,7 +356,7 @@ TEST(PipelineScorerTest, SetsOfARelativeEstimatorAreComparedOnItsAnchor) {
    private:
     std::optional<DeviceTime> first_;
   };
-  setup.make_estimator = [] { return std::make_unique<SensorTime>(); };
+  setup.make_estimator = [](std::size_t) { return std::make_unique<SensorTime>(); };
   const SeedScore seed = score(TestCapture(2, 2), setup);
   EXPECT_EQ(seed.sets.pure, 10);
   EXPECT_NEAR(seed.absolute_error_ms, 10, kTolerance);
@@ -384,7 +386,7 @@ TEST(PipelineScorerTest, OfflineStampsFollowTheEndOfTheCapture) {
     return from_ms(camera == 3 ? 2 : 0) + from_ms(pulse % 2 == 0 ? 0.5 : 0);
   };
   ScorerSetup setup = arrival_setup();
-  setup.make_estimator = [] { return make_offline_regression(); };
+  setup.make_estimator = [](std::size_t) { return make_offline_regression(); };
   setup.make_second_estimator = setup.make_estimator;
   const SeedScore seed = score(capture, setup);
   EXPECT_NEAR(seed.amd_ms, 2, 2e-6);
@@ -400,9 +402,9 @@ TEST(PipelineScorerTest, TheSecondEstimatorLeavesTheScoresAlone) {
     return from_ms(0.1 * static_cast<double>((camera * 7 + pulse * 5) % 11));
   };
   ScorerSetup setup = arrival_setup();
-  setup.make_estimator = [] { return make_regression(RegressionWindow{30}); };
+  setup.make_estimator = [](std::size_t) { return make_regression(RegressionWindow{30}); };
   const SeedScore alone = score(capture, setup);
-  setup.make_second_estimator = [] { return make_offline_regression(); };
+  setup.make_second_estimator = [](std::size_t) { return make_offline_regression(); };
   const SeedScore with_second = score(capture, setup);
   EXPECT_EQ(alone.amd_ms, with_second.amd_ms);
   EXPECT_EQ(alone.sets.pure, with_second.sets.pure);
@@ -429,7 +431,7 @@ TEST(PipelineScorerTest, StampsOutOfAllBoundsStaySubtractable) {
    private:
     std::shared_ptr<Wild> wild_;
   };
-  setup.make_estimator = [&] { return std::make_unique<Alternate>(shared); };
+  setup.make_estimator = [&](std::size_t) { return std::make_unique<Alternate>(shared); };
   const SeedScore seed = score(TestCapture(1, 2), setup);
   EXPECT_NEAR(seed.amd_ms, std::ldexp(1.0, 63) * 1e-6, 1e3);
 }

@@ -37,6 +37,18 @@ TEST(PulseAccount, CountsWhatIsDueAndExposed) {
   EXPECT_EQ(counts_of(account).exposed_pulses, kPulses);
 }
 
+// Pulses 10 to 29, of which the second camera exposes the even ones: 10 are due, and a lost frame
+// of it was exposed.
+TEST(PulseAccount, WhereACameraExposesEverySecondPulseTheseAreDue) {
+  PulseAccount account(kFirst, kPulses, 2, /*due_every=*/2);
+  add_camera(account, 0, 5, 35, {13, 14}, {20});
+  std::vector<std::int64_t> odd;
+  for (std::int64_t pulse = 5; pulse < 35; pulse += 2) odd.push_back(pulse);
+  add_camera(account, 1, 5, 35, {16}, odd);
+  EXPECT_EQ(counts_of(account).due_pulses, 10);
+  EXPECT_EQ(counts_of(account).exposed_pulses, 9);
+}
+
 TEST(PulseAccount, ALostFrameWasExposedAMissingPulseWasNot) {
   PulseAccount account(kFirst, kPulses, 2);
   add_camera(account, 0, 5, 35, {12, 13, 20});

@@ -161,12 +161,12 @@ ScorerSetup block_setup(const std::string& device_time, const std::string& gathe
   const DeviceTimeName name = parse_device_time_name(device_time);
   const DeviceTimeEntry& estimator = *find_algorithm<DeviceTimeEntry>(name.base);
   if (estimator.make) {
-    setup.make_estimator = [name, &estimator] {
+    setup.make_estimator = [name, &estimator](std::size_t) {
       const Parameters parameters = check_parameters(estimator.info.parameters, {});
       return make_variant(name, estimator.make(parameters), {});
     };
   }
-  setup.make_second_estimator = [] {
+  setup.make_second_estimator = [](std::size_t) {
     return find_algorithm<DeviceTimeEntry>("regression_offline")->make({});
   };
   const GatheringEntry& gatherer = *find_algorithm<GatheringEntry>(gathering);

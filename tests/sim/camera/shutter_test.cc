@@ -34,6 +34,26 @@ std::vector<std::int64_t> answered(const ShutterSettings& settings, double pulse
   return slots;
 }
 
+TEST(TriggeredShutter, ExposesFromThePulseOn) {
+  ShutterSettings settings = settings_of(ShutterMode::kTriggered, kModePeriod90);
+  settings.trigger_to_exposure = from_ms(0.02);
+  Shutter shutter(settings, TrueTime{});
+  const auto exposure = shutter.on_pulse(at_ms(100), 9);
+  ASSERT_TRUE(exposure);
+  EXPECT_EQ(exposure->start, at_ms(100.02));
+  EXPECT_EQ(exposure->end, at_ms(104.02));
+  EXPECT_EQ(shutter.next_timer(), TrueTime::max()) << "it waits for pulses without limit";
+}
+
+// At the rate of its mode it answers each pulse, where genlock answers every second one.
+TEST(TriggeredShutter, AnswersEveryPulseUpToItsModeRate) {
+  const ShutterSettings settings = settings_of(ShutterMode::kTriggered, kModePeriod90);
+  const std::vector<std::int64_t> all = {0, 1, 2, 3, 4};
+  EXPECT_EQ(answered(settings, kModePeriod90, 5), all);
+  EXPECT_EQ(answered(settings, 7 * kModePeriod90, 5), all);
+  EXPECT_EQ(answered(settings, kModePeriod90 / 2, 5), (std::vector<std::int64_t>{0, 2, 4}));
+}
+
 TEST(GenlockShutter, ExposureStartsWithThePulse) {
   ShutterSettings settings = settings_of(ShutterMode::kGenlock, kModePeriod90);
   settings.trigger_to_exposure = from_ms(0.79);

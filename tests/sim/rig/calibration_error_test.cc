@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "scenarios/calibration.h"
+#include "scenarios/camera_groups.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 #include "tests/sim/rig/captured_frames.h"
@@ -16,13 +18,15 @@ namespace simbench::sim {
 namespace {
 
 // From the end of the exposure of the middle row to the arrival, on average.
-double mean_delay_ms(const scenarios::Scenario& scenario, const scenarios::Stream& stream) {
+double mean_delay_ms(const scenarios::Scenario& scenario, const scenarios::Stream& stream,
+                     std::size_t group = 0) {
+  const std::vector<std::size_t> groups = scenarios::group_of_cameras(scenario.cameras);
   const double readout_ms =
       stream.shutter == scenarios::ShutterKind::kRolling ? stream.readout_ms : 0;
   double sum_ms = 0;
   int frames = 0;
   for (const CapturedFrames::Frame& frame : capture(scenario).frames) {
-    if (frame.record.stream != stream.kind) continue;
+    if (frame.record.stream != stream.kind || groups[frame.record.camera] != group) continue;
     sum_ms += host_ms_of(frame.record.arrival) -
               to_ms(frame.truth.exposure_end.time_since_epoch()) + readout_ms / 2;
     ++frames;
@@ -58,9 +62,12 @@ TEST(Calibration, ComputedDelaysAreThoseOfEveryWorld) {
                         scenario.cameras.exposure_camera_periods > 0 ||
                         scenario.trigger.cable_delay_max_us > 1000;
     const double allowed_ms = differ ? 0.6 : 0.06;
-    for (const scenarios::Stream& stream : scenario.cameras.streams) {
-      EXPECT_NEAR(scenarios::calibrated_delay_ms(scenario, stream), mean_delay_ms(scenario, stream),
-                  allowed_ms);
+    for (std::size_t group = 0; group < scenarios::group_count(scenario.cameras); ++group) {
+      const scenarios::Scenario alone = scenarios::group_alone(scenario, group);
+      for (const scenarios::Stream& stream : alone.cameras.streams) {
+        EXPECT_NEAR(scenarios::calibrated_delay_ms(alone, stream),
+                    mean_delay_ms(scenario, stream, group), allowed_ms);
+      }
     }
   }
 }
