@@ -145,7 +145,8 @@ struct PulseScoring {
   Nanoseconds period{};  // of the pulses
   // Each source exposes at one of so many pulses: the others are no lost frames.
   std::int64_t pulses_per_frame = 1;
-  std::vector<std::int64_t> pulses_per_frame_of_source;  // in place of it, by column; empty: alike
+  std::vector<std::int64_t>
+      pulses_per_frame_of_source{};  // in place of it, by column; empty: alike
   std::uint32_t hosts = 0;
   std::vector<std::uint32_t> host_of_source;  // by column of the table
 };

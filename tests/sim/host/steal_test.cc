@@ -36,13 +36,15 @@ TEST(StolenTime, WhatComesWaitsForTheEndOfTheSlice) {
 
 TEST(StolenTime, HostsHaveSlicesOfTheirOwn) {
   const scenarios::Steal steal{.share = 0.5, .slice_ms = 4};
-  const StolenTime one(steal, kStealSeed, 1);
-  const StolenTime other(steal, kStealSeed, 2);
   int both = 0;
-  for (int i = 0; i < 20'000; ++i) {
-    both += ms_of_wait(one, i) > 0 && ms_of_wait(other, i) > 0;
+  for (PeerId host = 0; host < 400; host += 2) {
+    const StolenTime one(steal, kStealSeed, host);
+    const StolenTime other(steal, kStealSeed, host + 1);
+    for (int i = 0; i < 200; ++i) {
+      both += ms_of_wait(one, i * 1.37) > 0 && ms_of_wait(other, i * 1.37) > 0;
+    }
   }
-  EXPECT_NEAR(both / 20'000.0, 0.25, 0.02);
+  EXPECT_NEAR(both / 40'000.0, 0.25, 0.02);
 }
 
 TEST(StolenTime, NothingStolenIsNoWait) {

@@ -12,7 +12,7 @@ namespace simbench {
 namespace {
 
 // A neighbour whose clock runs 50 ppm faster, 400 of its nanoseconds away.
-PeerDelayExchange exchange_at(std::int64_t t1, std::int64_t held_ns) {
+PeerDelayExchange peer_exchange_at(std::int64_t t1, std::int64_t held_ns) {
   const double rate = 1 + 50e-6;
   const auto there = [rate](double own) { return std::llround(rate * own); };
   const double flight = 400 / rate;
@@ -26,10 +26,10 @@ PeerDelayExchange exchange_at(std::int64_t t1, std::int64_t held_ns) {
 TEST(LinkDelay, TheNeighboursRateTakesTheTimeItHoldsARequestOutOfTheDelay) {
   LinkDelay link(8);
   EXPECT_EQ(link.delay(), std::nullopt);
-  link.add(exchange_at(0, 10'000'000));
+  link.add(peer_exchange_at(0, 10'000'000));
   EXPECT_EQ(link.rate_ratio(), std::nullopt);
   EXPECT_NEAR(*link.delay(), 400 - 50e-6 * 10e6 / 2, 1) << "without a rate, half of what it gained";
-  for (int i = 1; i < 20; ++i) link.add(exchange_at(i * 1'000'000'000L, 10'000'000));
+  for (int i = 1; i < 20; ++i) link.add(peer_exchange_at(i * 1'000'000'000L, 10'000'000));
   EXPECT_NEAR(*link.rate_ratio() - 1, 50e-6, 1e-9);
   EXPECT_NEAR(*link.delay(), 400, 1);
 }
