@@ -7,7 +7,8 @@
 // all if that camera has none. It is known before the first complete set, which has a frame of that
 // camera.
 //
-//   Stamping stamping(layout, [] { return make_regression(RegressionWindow{30}); });
+//   Stamping stamping(layout,
+//                     [](std::size_t) { return make_regression(RegressionWindow{30}); });
 //   const DeviceTime sensor = stamping.unwrap(record.camera, record.sensor);
 //   stamping.stamp(block);
 //   table.shift(stamping.shift());

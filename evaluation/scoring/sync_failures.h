@@ -2,8 +2,8 @@
 // slave that came to its master late is none of them.
 //
 //   SyncFailures failures;
-//   failures.add(outcome);
-//   score.failures = failures.take();
+//   failures.add({.slave = 3, .synchronised = false, .message = "no reply"});
+//   const std::vector<SyncOutcome> failed = failures.take();
 #pragma once
 
 #include <utility>
