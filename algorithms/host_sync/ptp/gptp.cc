@@ -312,19 +312,19 @@ Task<void> relay_gptp(Host& host, PeerId master, std::vector<PeerId> slaves,
 }
 
 void GptpSettings::bind(ParameterBinder& parameters) {
-  const char* const kProfile = "linuxptp, configs/gPTP.cfg; IEEE 802.1AS-2020";
+  const char* const profile = "linuxptp, configs/gPTP.cfg; IEEE 802.1AS-2020";
   bind_warm_up(parameters, service_time);
   parameters.log2_seconds("log_sync_interval", sync_interval, -7, 12,
                           "log2 of the seconds between two Sync messages: -3 is 8 a second",
-                          kProfile);
+                          profile);
   parameters.log2_seconds("log_delay_interval", delay_interval, -7, 12,
-                          "log2 of the seconds between two measurements of the link", kProfile);
+                          "log2 of the seconds between two measurements of the link", profile);
   parameters.number("delay_exchanges", delay_exchanges, 2, 1e4,
                     "measurements over which a link's delay and rate ratio are taken", kAssumption);
   parameters.number("most_link_delay_ns", most_link_delay_ns, 0, 1e9,
-                    "a link that takes longer takes no Sync: neighborPropDelayThresh", kProfile);
+                    "a link that takes longer takes no Sync: neighborPropDelayThresh", profile);
   parameters.number("domain", domain, 0, 127, "domainNumber: messages of others are ignored",
-                    kProfile);
+                    profile);
   servo_limits.bind_first_step(parameters, "linuxptp (phc2sys), default");
   servo_limits.bind_max_frequency(parameters, "linuxptp: clockadj_max_freq()");
 }
