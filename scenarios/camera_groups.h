@@ -3,7 +3,7 @@
 //
 // Code that knows cameras of one kind sees a group as a rig of its own: group_alone() is the
 // scenario with the cameras of that group and no others. Cameras on one USB controller are of one
-// group (scenarios/camera_group_checks.h), so a group's frames share the bus with each other alone,
+// group (scenarios/camera_checks.h), so a group's frames share the bus with each other alone,
 // and what holds of a group's own rig (its calibrated delay, its rates, its load) holds in the
 // whole one.
 //

@@ -83,6 +83,10 @@ bool has_load(const Scenario& scenario, RealityLoad load) {
       return has_traffic(scenario, TrafficKind::kRandom);
     case RealityLoad::kCpu:
       return scenario.hosts.cpu_load.has_value();
+    case RealityLoad::kDisk:
+      return scenario.hosts.io_load.has_value();
+    case RealityLoad::kSteal:
+      return scenario.hosts.steal.has_value();
   }
   return false;
 }
@@ -99,6 +103,10 @@ const char* load_name(RealityLoad load) {
       return "random traffic";
     case RealityLoad::kCpu:
       return "busy processors";
+    case RealityLoad::kDisk:
+      return "disk I/O";
+    case RealityLoad::kSteal:
+      return "stolen processors";
   }
   return "";
 }
@@ -118,6 +126,35 @@ std::size_t most_hops(const Hosts& hosts) {
   return most;
 }
 
+// A recorded ratio under load.
+struct LoadedRatio {
+  RealityLoad load{};
+  std::size_t hops = 0;
+  double factor = 1;  // by which it is off, either way
+  std::string recording;
+  bool is_known = false;
+};
+
+// Made once: it loads their scenarios.
+const std::vector<LoadedRatio>& loaded_ratios() {
+  static const std::vector<LoadedRatio> all = [] {
+    std::vector<LoadedRatio> ratios;
+    for (const RealRecording& recording : real_recordings()) {
+      for (const RealitySetting& setting : recording.settings) {
+        if (setting.load == RealityLoad::kNone) continue;
+        ratios.push_back(
+            {.load = setting.load,
+             .hops = hops_of(load_scenario(setting.scenario, setting.set).hosts, setting.host),
+             .factor = std::max(setting.recorded_ratio, 1 / setting.recorded_ratio),
+             .recording = recording.name,
+             .is_known = !setting.used_for.empty()});
+      }
+    }
+    return ratios;
+  }();
+  return all;
+}
+
 // The furthest off of the recorded ratios of a kind of load.
 struct FurthestOff {
   std::map<std::size_t, double> factors;  // by hops from the master
@@ -127,17 +164,12 @@ struct FurthestOff {
 
 FurthestOff furthest_off(RealityLoad load, std::size_t hops) {
   FurthestOff furthest;
-  for (const RealRecording& recording : real_recordings()) {
-    for (const RealitySetting& setting : recording.settings) {
-      if (setting.load != load) continue;
-      const std::size_t its_hops =
-          hops_of(load_scenario(setting.scenario, setting.set).hosts, setting.host);
-      if (its_hops > hops) continue;
-      double& factor = furthest.factors.try_emplace(its_hops, 1).first->second;
-      factor = std::max({factor, setting.recorded_ratio, 1 / setting.recorded_ratio});
-      furthest.recordings.insert(recording.name);
-      furthest.is_known |= !setting.used_for.empty();
-    }
+  for (const LoadedRatio& ratio : loaded_ratios()) {
+    if (ratio.load != load || ratio.hops > hops) continue;
+    double& factor = furthest.factors.try_emplace(ratio.hops, 1).first->second;
+    factor = std::max(factor, ratio.factor);
+    furthest.recordings.insert(ratio.recording);
+    furthest.is_known |= ratio.is_known;
   }
   return furthest;
 }
@@ -160,7 +192,7 @@ std::string factors_text(const std::map<std::size_t, double>& factors) {
 std::vector<std::string> load_reality(const Scenario& scenario) {
   using enum RealityLoad;
   std::vector<std::string> lines;
-  for (const RealityLoad load : {kTcp, kPaced, kRandom, kCpu}) {
+  for (const RealityLoad load : {kTcp, kPaced, kRandom, kCpu, kDisk, kSteal}) {
     if (!has_load(scenario, load)) continue;
     const FurthestOff off = furthest_off(load, most_hops(scenario.hosts));
     lines.push_back(

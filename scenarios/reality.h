@@ -43,11 +43,16 @@ constexpr auto words_of(RealityQuantity) {
 }
 
 // What loads hosts or network in a setting.
-enum class RealityLoad : std::uint8_t { kNone, kTcp, kPaced, kRandom, kCpu };
+enum class RealityLoad : std::uint8_t { kNone, kTcp, kPaced, kRandom, kCpu, kDisk, kSteal };
 constexpr auto words_of(RealityLoad) {
   using enum RealityLoad;
-  return std::to_array<Word<RealityLoad>>(
-      {{kNone, "none"}, {kTcp, "tcp"}, {kPaced, "paced"}, {kRandom, "random"}, {kCpu, "cpu"}});
+  return std::to_array<Word<RealityLoad>>({{kNone, "none"},
+                                           {kTcp, "tcp"},
+                                           {kPaced, "paced"},
+                                           {kRandom, "random"},
+                                           {kCpu, "cpu"},
+                                           {kDisk, "disk"},
+                                           {kSteal, "steal"}});
 }
 
 struct RealitySetting {

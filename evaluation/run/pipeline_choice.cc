@@ -421,11 +421,14 @@ void count_unequal_rates(const Scenario& scenario, ScorerSetup& setup) {
     setup.due_every = std::lcm(setup.due_every, group.pulses_per_frame);
   }
   if (setup.due_every == 1) return;
-  for (const std::size_t group : scenarios::group_of_cameras(scenario.cameras)) {
+  std::vector<std::int64_t> of_group;
+  for (std::size_t group = 0; group < scenarios::group_count(scenario.cameras); ++group) {
     const scenarios::Scenario alone = scenarios::group_alone(scenario, group);
-    setup.pulses_per_frame_of_camera.push_back(
-        alone.pulses_per_passed_frame(*alone.scored_stream()) *
-        scenarios::pulses_per_frame(scenario.cameras, group));
+    of_group.push_back(alone.pulses_per_passed_frame(*alone.scored_stream()) *
+                       scenarios::pulses_per_frame(scenario.cameras, group));
+  }
+  for (const std::size_t group : scenarios::group_of_cameras(scenario.cameras)) {
+    setup.pulses_per_frame_of_camera.push_back(of_group[group]);
   }
 }
 

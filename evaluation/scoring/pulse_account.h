@@ -32,7 +32,7 @@ namespace simbench::evaluation {
 
 class PulseAccount {
  public:
-  // Those pulses are due whose number is a multiple of `due_every`.
+  // A pulse is due if its number is a multiple of `due_every`.
   PulseAccount(std::int64_t first_pulse, std::int64_t pulses, std::size_t cameras,
                std::int64_t due_every = 1);
 

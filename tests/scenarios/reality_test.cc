@@ -70,6 +70,9 @@ TEST(Reality, ALoadedScenarioSaysHowFarOffTheBenchWas) {
                                          {traffic, {"/network/bandwidth_mbit_per_s", "1000"}})),
               ElementsAre(StartsWith("within a factor of 1.2 of real rigs under saturating TCP"),
                           "no real rig was measured under random traffic"));
+  EXPECT_THAT(load_reality(load_scenario("6host_star",
+                                         {{"/hosts/steal", R"({"share": 0.1, "slice_ms": 4})"}})),
+              ElementsAre("no real rig was measured under stolen processors"));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "algorithms/host_sync/ptp/gptp_time.h"
 #include "algorithms/host_sync/ptp/ptp_clocks.h"
 #include "algorithms/host_sync/ptp/ptp_message.h"
+#include "algorithms/host_sync/ptp/ptp_two_step.h"
 #include "algorithms/host_sync/stamps.h"
 #include "algorithms/registry.h"
 
@@ -73,9 +74,8 @@ class TimeTransmitter {
 
   Task<void> send_sync() {
     PtpMessage message = gptp_message(host_, PtpType::kSync, ++sequence_, settings_.domain);
-    Bytes sync = encode(message);
-    const MessageId id = co_await channel().send(std::move(sync));
-    const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
+    const std::optional<std::int64_t> departure =
+        co_await send_stamped(channel(), stamps_, message);
     if (!departure) co_return;
     message.type = PtpType::kFollowUp;
     if (station_ == nullptr) {
@@ -95,19 +95,9 @@ class TimeTransmitter {
     const std::optional<PtpMessage> request = decode_gptp(received.bytes, settings_.domain);
     const std::optional<std::int64_t> arrival = stamps_.arrival(received);
     if (!request || !arrival || request->type != PtpType::kPeerDelayRequest) co_return;
-    PtpMessage message =
-        gptp_message(host_, PtpType::kPeerDelayResponse, request->sequence, settings_.domain);
-    message.time_ns = *arrival;
-    message.asked_by = request->sender;
-    Bytes response = encode(message);
-    const MessageId id = co_await channel().send(std::move(response));
-    const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
-    if (!departure) co_return;
-    message.type = PtpType::kPeerDelayFollowUp;
-    message.correction = request->correction;
-    message.time_ns = *departure;
-    Bytes follow_up = encode(message);
-    co_await channel().send(std::move(follow_up));
+    co_await answer_peer_delay(
+        channel(), stamps_, *request, *arrival,
+        gptp_message(host_, PtpType::kPeerDelayResponse, request->sequence, settings_.domain));
   }
 
   Host& host_;
@@ -171,9 +161,7 @@ class TimeReceiver {
         gptp_message(host_, PtpType::kPeerDelayRequest, ++sequence_, settings_.domain);
     request_.reset();
     response_.reset();
-    Bytes bytes = encode(message);
-    const MessageId id = co_await channel().send(std::move(bytes));
-    request_ = co_await stamps_.departure(channel(), id);
+    request_ = co_await send_stamped(channel(), stamps_, message);
   }
 
   void take(const ReceivedMessage& received) {

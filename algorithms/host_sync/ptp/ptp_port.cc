@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/host_sync/ptp/ptp_two_step.h"
+
 namespace simbench {
 namespace {
 
@@ -70,9 +72,7 @@ Task<void> PtpMaster::send_sync() {
                      .sender = host_.id(),
                      .sequence = ++sequence_,
                      .domain = domain_of(settings_)};
-  Bytes sync = encode(message);
-  const MessageId id = co_await channel().send(std::move(sync));
-  const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
+  const std::optional<std::int64_t> departure = co_await send_stamped(channel(), stamps_, message);
   if (!departure) co_return;
   message.type = PtpType::kFollowUp;
   message.time_ns = *departure;
@@ -86,7 +86,8 @@ Task<void> PtpMaster::answer(ReceivedMessage received) {
   const std::optional<std::int64_t> arrival = stamps_.arrival(received);
   if (!arrival) co_return;
   if (request->type == PtpType::kPeerDelayRequest) {
-    co_await answer_peer_delay(*request, *arrival);
+    co_await answer_peer_delay(channel(), stamps_, *request, *arrival,
+                               {.sender = host_.id(), .domain = domain_of(settings_)});
     co_return;
   }
   if (request->type != PtpType::kDelayRequest) co_return;
@@ -99,25 +100,6 @@ Task<void> PtpMaster::answer(ReceivedMessage received) {
                            .asked_by = request->sender,
                            .domain = domain_of(settings_)});
   co_await channel().send(std::move(response));
-}
-
-Task<void> PtpMaster::answer_peer_delay(PtpMessage request, std::int64_t arrival) {
-  PtpMessage message{.type = PtpType::kPeerDelayResponse,
-                     .sender = host_.id(),
-                     .sequence = request.sequence,
-                     .correction = 0,
-                     .time_ns = arrival,
-                     .asked_by = request.sender,
-                     .domain = domain_of(settings_)};
-  Bytes response = encode(message);
-  const MessageId id = co_await channel().send(std::move(response));
-  const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
-  if (!departure) co_return;
-  message.type = PtpType::kPeerDelayFollowUp;
-  message.correction = request.correction;
-  message.time_ns = *departure;
-  Bytes follow_up = encode(message);
-  co_await channel().send(std::move(follow_up));
 }
 
 namespace {
@@ -174,9 +156,7 @@ Task<void> PtpSlave::ask() {
   request_.reset();
   peer_response_.reset();
   peer_follow_up_.reset();
-  Bytes bytes = encode(message);
-  const MessageId id = co_await channel().send(std::move(bytes));
-  const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
+  const std::optional<std::int64_t> departure = co_await send_stamped(channel(), stamps_, message);
   if (departure) request_ = Half{message, *departure};
 }
 

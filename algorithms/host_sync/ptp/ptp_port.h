@@ -39,7 +39,6 @@ class PtpMaster {
   MessageChannel& channel() { return host_.open_channel(slave_, Transport::kDatagram); }
   Task<void> send_sync();
   Task<void> answer(ReceivedMessage received);
-  Task<void> answer_peer_delay(PtpMessage request, std::int64_t arrival);
 
   Host& host_;
   PeerId slave_;
