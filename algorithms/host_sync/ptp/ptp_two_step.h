@@ -3,6 +3,7 @@
 // Stamps are counts of nanoseconds of the clock that stamps (stamps.h).
 // Source: IEEE 1588-2008 clauses 11.3 and 11.4; IEEE 802.1AS-2020, 11.2.
 //
+//   MessageStamps stamps(host, StampSource::kCard);
 //   const auto departure = co_await send_stamped(channel, stamps, {.type = PtpType::kSync});
 //   if (departure) co_await channel.send(Bytes(44));
 #pragma once
