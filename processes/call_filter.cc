@@ -82,19 +82,6 @@ Code only_for(int argument, std::uint32_t value, std::uint32_t otherwise = kTrap
   return one_of(argument, {value}, kAllow, otherwise);
 }
 
-// Waits on a lock that end at a time.
-Code futex() {
-  Code code{load_low(3), unless(BPF_JEQ, 0, 3), load_high(3), unless(BPF_JEQ, 0, 1),
-            verdict(kAllow)};
-  code.push_back(load_low(1));
-  code.push_back(statement(BPF_ALU | BPF_AND | BPF_K, static_cast<std::uint32_t>(FUTEX_CMD_MASK)));
-  for (const int wait : {FUTEX_WAIT, FUTEX_WAIT_BITSET, FUTEX_LOCK_PI, FUTEX_WAIT_REQUEUE_PI, 13}) {
-    append(code, on(static_cast<std::uint32_t>(wait), {verdict(kTrap)}));
-  }
-  code.push_back(verdict(kAllow));
-  return code;
-}
-
 // Where the clock alone is the world's: those that end at a time of it.
 Code futex_of_machine() {
   Code code{load_low(3), unless(BPF_JEQ, 0, 3), load_high(3), unless(BPF_JEQ, 0, 1),
@@ -104,16 +91,16 @@ Code futex_of_machine() {
   return code;
 }
 
-// Threads only: a second one that asks the world names itself.
+// Threads and processes, as libc makes them: of this program's namespaces, and with its parent.
+// What fork() would do is handed to the shim.
 Code clone() {
-  return {load_low(0), unless(BPF_JSET, CLONE_THREAD, 1), verdict(kAllow), verdict(kTrap)};
-}
-
-Code execute(const char* program) {
-  const auto address = reinterpret_cast<std::uintptr_t>(program);
-  return {load_low(0),     unless(BPF_JEQ, static_cast<std::uint32_t>(address), 3),
-          load_high(0),    unless(BPF_JEQ, static_cast<std::uint32_t>(address >> 32U), 1),
-          verdict(kAllow), verdict(kTrap)};
+  constexpr std::uint32_t kElsewhere = CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC |
+                                       CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET | CLONE_PARENT |
+                                       CLONE_PTRACE | CLONE_UNTRACED;
+  Code code{load_low(0)};
+  append(code, on(SIGCHLD, {verdict(kTrap)}));
+  append(code, {unless(BPF_JSET, kElsewhere, 1), verdict(kTrap), verdict(kAllow)});
+  return code;
 }
 
 // SIGSYS is the shim's.
@@ -147,6 +134,7 @@ bool is_of_machine(int number) {
     case SYS_setitimer:
     case SYS_rt_sigsuspend:
     case SYS_rt_sigtimedwait:
+    case SYS_getrandom:
 #ifdef __x86_64__
     case SYS_select:
     case SYS_poll:
@@ -162,7 +150,7 @@ bool is_of_machine(int number) {
 }
 
 // The calls that the table calls partly refused, and those that it does not have.
-Code by_arguments(int number, const char* program) {
+Code by_arguments(int number) {
   switch (number) {
     case SYS_clock_gettime:
       return one_of(0, {CLOCK_PROCESS_CPUTIME_ID, CLOCK_THREAD_CPUTIME_ID}, kAllow, kTrap);
@@ -176,26 +164,31 @@ Code by_arguments(int number, const char* program) {
     case SYS_ppoll:
     case SYS_rt_sigtimedwait:
       return only_for(4, shim::kOfTheShim);
-    case SYS_futex:
-      return futex();
+    case SYS_epoll_create1:
+      return only_for(5, shim::kOfTheShim);
+    case SYS_epoll_pwait:
+      return only_for(3, 0);  // which does not wait
     case SYS_clone:
       return clone();
-    case SYS_execve:
-      return execute(program);
     default:
       throw std::logic_error("a call is partly refused, and no rule says which part");
   }
 }
 
-Code by_arguments_beside_clock(int number, const char* program) {
+Code by_arguments_beside_clock(int number) {
   switch (number) {
     case SYS_socket:
       return one_of(0, {AF_UNIX, AF_INET, AF_INET6, AF_NETLINK}, kAllow, kTrap);
     case SYS_futex:
       return futex_of_machine();
     default:
-      return by_arguments(number, program);
+      return by_arguments(number);
   }
+}
+
+// Locks of the world are all its own; beside the machine's, those that end at a time of its clock.
+bool is_partly(const shim::RefusedCall& call, Served served) {
+  return call.refusal == Refusal::kPartly || (call.number == SYS_futex && served == Served::kClock);
 }
 
 std::uint32_t verdict_of(Refusal refusal) {
@@ -216,7 +209,7 @@ std::uint32_t verdict_of(Refusal refusal) {
 
 }  // namespace
 
-std::vector<sock_filter> call_filter(const char* program, Served served) {
+std::vector<sock_filter> call_filter(Served served) {
   Code code{load(offsetof(seccomp_data, arch)), unless(BPF_JEQ, kArchitecture, 1),
             statement(BPF_JMP | BPF_JA, 1), verdict(SECCOMP_RET_KILL_PROCESS),
             load(offsetof(seccomp_data, nr))};
@@ -227,8 +220,8 @@ std::vector<sock_filter> call_filter(const char* program, Served served) {
   for (const shim::RefusedCall& call : shim::kRefusedCalls) {
     if (has_machine && is_of_machine(call.number)) continue;
     append(code, on(static_cast<std::uint32_t>(call.number),
-                    call.refusal == Refusal::kPartly ? partly(call.number, program)
-                                                     : Code{verdict(verdict_of(call.refusal))}));
+                    is_partly(call, served) ? partly(call.number)
+                                            : Code{verdict(verdict_of(call.refusal))}));
   }
   for (const int kill :
        {SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo}) {

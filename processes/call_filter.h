@@ -3,7 +3,7 @@
 // Calls of another architecture than the machine's own kill the program. A call that ends the
 // program is SECCOMP_RET_TRAP: the kernel raises SIGSYS on the thread that made it.
 //
-//   std::vector<sock_filter> filter = call_filter("/usr/sbin/chronyd");
+//   std::vector<sock_filter> filter = call_filter();
 //   set_own_process(filter, 4711);
 //   const sock_fprog ready{static_cast<unsigned short>(filter.size()), filter.data()};
 //
@@ -23,9 +23,9 @@ namespace simbench::processes {
 // set.
 enum class Served : std::uint8_t { kAll, kClock };
 
-// execve() is allowed for the name at this address, which is where the caller of execve() has it.
 // Signals are allowed to one process, which is kOwnProcess until set_own_process() replaces it.
-std::vector<sock_filter> call_filter(const char* program, Served served = Served::kAll);
+// What the program starts has the same filter.
+std::vector<sock_filter> call_filter(Served served = Served::kAll);
 
 // What is written where the number of the process goes.
 inline constexpr std::uint32_t kOwnProcess = 0x7FFFFFFE;

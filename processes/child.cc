@@ -110,23 +110,19 @@ Child::Child(const Settings& settings)
     : name_(std::filesystem::path(settings.command.at(0)).filename()),
       log_(settings.folder + "/" + settings.log_name),
       patience_(settings.patience),
-      link_(settings.link),
-      served_(settings.served),
-      buffer_(shim::kMostData) {
-  if (link_ < 0) {
+      served_(settings.served) {
+  int link = settings.link;
+  if (link < 0) {
     try {
-      obstacle_ = start(settings);
+      obstacle_ = start(settings, link);
     } catch (const ConfinementError& error) {
       obstacle_ = error.what();
     }
   }
-  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience_);
-  const std::chrono::microseconds rest = patience_ - whole_s;
-  const timeval patience{.tv_sec = whole_s.count(), .tv_usec = rest.count()};
-  setsockopt(link_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  link_ = std::make_unique<Link>(link, patience_);
 }
 
-std::string Child::start(const Settings& settings) {
+std::string Child::start(const Settings& settings, int& link) {
   std::vector<std::string> arguments = settings.command;
   std::vector<std::string> environment = {
       fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
@@ -138,7 +134,7 @@ std::string Child::start(const Settings& settings) {
   const std::vector<char*> environment_pointers = pointers(environment);
   const std::string& program =
       settings.program.empty() ? settings.command.front() : settings.program;
-  Confinement confinement(settings.folder, program.c_str(), settings.served);
+  Confinement confinement(settings.folder, settings.served);
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return fmt::format("no link: {}", std::strerror(errno));
@@ -155,14 +151,11 @@ std::string Child::start(const Settings& settings) {
   if (process_ == 0) become(plan, confinement);
   const int error = errno;
   close(ends[1]);
-  link_ = ends[0];
+  link = ends[0];
   return process_ < 0 ? fmt::format("no process: {}", std::strerror(error)) : "";
 }
 
-Child::~Child() {
-  end();
-  if (link_ >= 0) close(link_);
-}
+Child::~Child() { end(); }
 
 void Child::follow_thread() {
   const int cpu = sched_getcpu();
@@ -175,36 +168,14 @@ void Child::follow_thread() {
 
 std::optional<ChildRequest> Child::next() {
   if (!obstacle_.empty()) return std::nullopt;
-  ChildRequest request;
-  std::array<iovec, 2> pieces{
-      {{&request.head, sizeof request.head}, {buffer_.data(), buffer_.size()}}};
-  msghdr message{};
-  message.msg_iov = pieces.data();
-  message.msg_iovlen = pieces.size();
-  ssize_t size = 0;
-  do {
-    size = recvmsg(link_, &message, 0);
-  } while (size < 0 && errno == EINTR);
-  was_too_slow_ = size < 0 && errno == EAGAIN;
-  if (size <= 0) return std::nullopt;
-  has_asked_ = true;
-  const auto whole = static_cast<std::size_t>(size);
-  const std::size_t data_size = whole - std::min(whole, sizeof request.head);
-  request.is_whole = whole >= sizeof request.head && request.head.size == data_size;
-  request.data.assign(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(data_size));
+  std::optional<ChildRequest> request = link_->next();
+  has_asked_ |= request.has_value();
   return request;
 }
 
 void Child::reply(std::int64_t value, int error, std::span<const std::byte> data) {
   if (served_ == Served::kAll) follow_thread();
-  shim::Reply head{.value = value, .error = error, .size = static_cast<std::uint32_t>(data.size())};
-  std::array<iovec, 2> pieces{
-      {{&head, sizeof head}, {const_cast<std::byte*>(data.data()), data.size()}}};
-  msghdr message{};
-  message.msg_iov = pieces.data();
-  message.msg_iovlen = pieces.size();
-  // A program that is gone is found by next(). One that takes no replies loses them.
-  sendmsg(link_, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  link_->reply(value, error, data);
 }
 
 std::string Child::ending(const std::string& reason) {
@@ -219,7 +190,7 @@ std::string Child::end() {
   if (process_ < 0) return "has closed its link";
   int status = 0;
   // One that has closed its link is exiting, and has a moment for it.
-  pollfd link{.fd = link_, .events = 0, .revents = 0};
+  pollfd link{.fd = link_->descriptor(), .events = 0, .revents = 0};
   const int moments = poll(&link, 1, 0) > 0 ? 200 : 0;
   pid_t ended = waitpid(process_, &status, WNOHANG);
   for (int i = 0; i < moments && ended == 0; ++i) {
@@ -253,7 +224,7 @@ std::string signal_text(int number) {
 }  // namespace
 
 std::string Child::how_it_ended(bool itself, int status) const {
-  if (was_too_slow_) {
+  if (link_->was_too_slow()) {
     return fmt::format("computed for {} s without waiting",
                        std::chrono::duration<double>(patience_).count());
   }

@@ -34,22 +34,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "algorithms/ports/host.h"
 #include "processes/call_filter.h"
-#include "shim/protocol.h"
+#include "processes/link.h"
 
 namespace simbench::processes {
-
-struct ChildRequest {
-  shim::Request head;
-  Bytes data;
-  bool is_whole = false;  // there is a head, and as much data as it says
-};
 
 class Child {
  public:
@@ -79,7 +73,10 @@ class Child {
   // Nothing: it has ended, or has computed for longer than kPatience.
   std::optional<ChildRequest> next();
   // The descriptor of its link; -1 if it could not be started.
-  int link() const { return link_; }
+  int link() const { return link_->descriptor(); }
+  std::chrono::milliseconds patience() const { return patience_; }
+  // What the machine calls it; -1: nothing was started.
+  pid_t process() const { return process_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
   // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
   // output.
@@ -87,7 +84,7 @@ class Child {
 
  private:
   // Returns why it cannot be started, or nothing.
-  std::string start(const Settings& settings);
+  std::string start(const Settings& settings, int& link);
   void follow_thread();
   // Returns how it ended.
   std::string end();
@@ -98,13 +95,11 @@ class Child {
   std::string log_;
   std::string obstacle_;  // to its start
   std::chrono::milliseconds patience_;
-  int link_;
+  std::unique_ptr<Link> link_;
   pid_t process_ = -1;
   bool has_asked_ = false;
   Served served_;
   int cpu_ = -1;  // the one that it is bound to
-  bool was_too_slow_ = false;
-  Bytes buffer_;
 };
 
 }  // namespace simbench::processes

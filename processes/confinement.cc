@@ -105,8 +105,8 @@ bool drop_capabilities() {
 
 }  // namespace
 
-Confinement::Confinement(const std::string& folder, const char* program, Served served)
-    : rules_(landlock_rules(folder)), filter_(call_filter(program, served)) {}
+Confinement::Confinement(const std::string& folder, Served served)
+    : rules_(landlock_rules(folder)), filter_(call_filter(served)) {}
 
 Confinement::~Confinement() {
   if (rules_ >= 0) close(rules_);

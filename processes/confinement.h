@@ -25,7 +25,7 @@
 //
 //   const char* program = "/usr/sbin/chronyd";
 //   char* const none[] = {nullptr};
-//   Confinement confinement(folder, program);
+//   Confinement confinement(folder);
 //   if (fork() == 0) {
 //     const Confinement::Failure failure = confinement.apply();
 //     if (failure.what == nullptr) execve(program, none, none);
@@ -56,9 +56,8 @@ class Confinement {
     int error = 0;               // an errno
   };
 
-  // The folder must be there. `program` is the very pointer that will be given to execve(): no
-  // other is executed. Throws ConfinementError.
-  Confinement(const std::string& folder, const char* program, Served served = Served::kAll);
+  // The folder must be there. Throws ConfinementError.
+  explicit Confinement(const std::string& folder, Served served = Served::kAll);
   ~Confinement();
   Confinement(const Confinement&) = delete;
   Confinement& operator=(const Confinement&) = delete;

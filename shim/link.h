@@ -10,8 +10,10 @@
 // program is root of its host and one process as ever. Waits until a time of the system clock are
 // converted when they begin; timers that make signals cannot be set to one.
 //
-// It has no libraries but libc, makes no threads and takes no memory from the heap. One thread asks
-// at a time, and always the same: a second one is reported to the world, which ends the program.
+// It has no libraries but libc, makes no threads and takes no memory from the heap. Each thread of
+// the program has a link of its own, and one runs at a time (shim/protocol.h): what the shim keeps
+// in memory needs no locks, but may have changed after each request. While a thread asks, signals
+// wait; their handlers run before ask() returns.
 //
 //   const TimerSetting wanted{.left = kSecond, .interval = 0};
 //   TimerSetting before{};
@@ -19,11 +21,13 @@
 //   ask({.call = Call::kSetTimer, .fd = 7}, {&wanted, sizeof wanted}, {}, &reply);
 #pragma once
 
+#include <signal.h>
 #include <time.h>
 
 #include <cstddef>
 #include <cstdint>
 
+#include "shim/machine.h"
 #include "shim/protocol.h"
 
 // A function of the program's view of libc.
@@ -47,9 +51,13 @@ struct Received {
 // Whether there is a world, and whether all is the world's rather than the clock alone.
 bool has_world();
 bool is_simulated();
-// Whether the descriptor is the way to it.
+// Whether the descriptor is a way to it.
 bool is_link(int fd);
 const Identity& identity();
+// The number of this thread, as gettid() has it.
+int own_thread();
+// Whether this thread can ask: not after end_thread().
+bool has_link();
 
 // Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
 std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Received* reply = nullptr);
@@ -61,9 +69,33 @@ std::int64_t ask_for(const Request& request, Value& value, Sent head = {}) {
   return ask(request, head, {}, &reply);
 }
 
+// A thread or process that is to be: its number, and its end of its link.
+struct Newcomer {
+  int number = -1;
+  int link = -1;
+};
+// `call` is kNewThread or kNewProcess. False with errno.
+bool announce(Call call, Newcomer& newcomer);
+// It has this number of the machine's, or 0: it could not be started. Waits until it is at its
+// first request; closes the link, which is the newcomer's, unless that is a thread.
+void tell_started(const Newcomer& newcomer, bool is_thread, int machine_number);
+// In the new thread, and before its end.
+void begin_thread(const Newcomer& newcomer);
+void end_thread();
+// The descriptor of this thread's link, and whether it goes on over exec().
+int link_number();
+void keep_link(bool over_exec);
+
+// Whether another thread of the host waits for what this one may do to real descriptors.
+bool is_watched();
+
 // Makes the signals of the timers that have expired, which the world tells with a reply.
 void make_signals();
-// How many of these signals have run a handler, so far, and of these how many without SA_RESTART.
+// Counts the handlers that waiting signals will run once only these are blocked.
+void count_handlers(const sigset_t& blocked);
+void forget_signal_timers();
+// How many signals have run a handler in this thread so far, and of these how many without
+// SA_RESTART.
 struct HandledSignals {
   std::uint64_t all = 0;
   std::uint64_t interrupting = 0;
@@ -83,6 +115,7 @@ Function real(Function /*type*/, const char* name) {
 }
 #define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
 
+// kLocal is real, and others of the host make it ready: Unix-domain sockets, pipes, eventfd().
 enum class Kind : std::uint8_t {
   kReal,
   kSocket,
@@ -96,9 +129,10 @@ enum class Kind : std::uint8_t {
   kOwnTimer
 };
 
-// Whether the world says when it is ready; of others, the kernel does.
+// Whether the world says when it is ready; of others, the kernel does. A set of epoll() has both.
 constexpr bool is_of_the_world(Kind kind) {
-  return kind == Kind::kSocket || kind == Kind::kStream || kind == Kind::kTimer;
+  return kind == Kind::kSocket || kind == Kind::kStream || kind == Kind::kTimer ||
+         kind == Kind::kEpoll;
 }
 
 inline constexpr int kMostDescriptors = 1024;
@@ -126,8 +160,7 @@ timespec to_timespec(std::int64_t ns);
 int set_world_timer(const Request& request, const itimerspec& setting, itimerspec* before);
 int query_world_timer(const Request& request, itimerspec& setting);
 
-// What a blocking read of a descriptor of the world waits for; a timeout below 0: for ever. False
-// with errno: EAGAIN at the timeout, EINTR after a handler, unless that says SA_RESTART.
+// As wait_for_ready() for POLLIN (shim/waiting.h).
 bool wait_for_input(int fd, std::int64_t timeout_ns);
 // read() of a timer.
 std::int64_t read_timer(int fd, void* data, std::size_t size);

@@ -3,8 +3,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/eventfd.h>
+#include <sys/inotify.h>
+#include <sys/signalfd.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/un.h>
@@ -13,13 +17,15 @@
 #include <cstddef>
 #include <initializer_list>
 
+#include "shim/waiting.h"
+
 namespace simbench::shim {
 namespace {
 
 // What others of the host may have waited for has happened.
 template <class Result>
 Result told(Result result) {
-  if (result >= 0) {
+  if (result >= 0 && is_watched()) {
     const int before = errno;
     ask({.call = Call::kLocalActivity});
     errno = before;
@@ -66,29 +72,67 @@ class OwnName {
   sockaddr_un own_{};
 };
 
-// Waits in simulated time for what a blocking call would wait for.
-void wait_to_read(int fd, int flags) {
-  if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return;
-  pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
-  poll(&interest, 1, -1);
+// Waits in simulated time for what a blocking call would wait for; false with errno.
+bool waits_to_read(int fd, int flags) {
+  if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return true;
+  return wait_for_ready(fd, POLLIN, -1);
+}
+
+// A descriptor that does not wait meanwhile.
+class Unwaiting {
+ public:
+  explicit Unwaiting(int fd)
+      : fd_(fd), flags_(static_cast<int>(machine_call(SYS_fcntl, fd, F_GETFL))) {
+    if (is_changed()) machine_call(SYS_fcntl, fd_, F_SETFL, flags_ | O_NONBLOCK);
+  }
+  ~Unwaiting() {
+    const int error = errno;
+    if (is_changed()) machine_call(SYS_fcntl, fd_, F_SETFL, flags_);
+    errno = error;
+  }
+  Unwaiting(const Unwaiting&) = delete;
+  Unwaiting& operator=(const Unwaiting&) = delete;
+  bool is_changed() const { return flags_ >= 0 && (flags_ & O_NONBLOCK) == 0; }
+
+ private:
+  int fd_;
+  int flags_;
+};
+
+// Until there may be room. What says that there is and then has none has another reason, which
+// others of the host may take away.
+bool waits_to_write(int fd, bool has_failed) {
+  return has_failed ? wait_for_activity() : wait_for_ready(fd, POLLOUT, -1);
+}
+
+// Tries until it need not wait. `Call` is a call that does not wait itself.
+template <class Call>
+ssize_t write_when_ready(int fd, bool may_wait, Call call) {
+  bool has_failed = false;
+  for (;;) {
+    const ssize_t written = call();
+    if (written >= 0 || errno != EAGAIN || !may_wait) return told(written);
+    if (!waits_to_write(fd, has_failed)) return -1;
+    has_failed = !has_failed;
+  }
 }
 
 }  // namespace
 
 int local_socket(int domain, int type, int protocol) {
-  const int fd = static_cast<int>(syscall(SYS_socket, domain, type, protocol));
+  const int fd = static_cast<int>(machine_call(SYS_socket, domain, type, protocol));
   set_kind(fd, Kind::kLocal);
   return fd;
 }
 
 int local_bind(int fd, const sockaddr* name, socklen_t size) {
   const OwnName own(name, size);
-  return static_cast<int>(syscall(SYS_bind, fd, own.name(), own.size()));
+  return static_cast<int>(machine_call(SYS_bind, fd, own.name(), own.size()));
 }
 
 int local_connect(int fd, const sockaddr* name, socklen_t size) {
   const OwnName own(name, size);
-  return told(static_cast<int>(syscall(SYS_connect, fd, own.name(), own.size())));
+  return told(static_cast<int>(machine_call(SYS_connect, fd, own.name(), own.size())));
 }
 
 ssize_t local_sendmsg(int fd, const msghdr* message, int flags) {
@@ -96,28 +140,52 @@ ssize_t local_sendmsg(int fd, const msghdr* message, int flags) {
   msghdr sent = *message;
   sent.msg_name = const_cast<sockaddr*>(own.name());
   sent.msg_namelen = own.size();
-  return told(static_cast<ssize_t>(syscall(SYS_sendmsg, fd, &sent, flags)));
+  const bool may_wait = (flags & MSG_DONTWAIT) == 0 && is_blocking(fd);
+  return write_when_ready(fd, may_wait, [&] {
+    return static_cast<ssize_t>(machine_call(SYS_sendmsg, fd, &sent, flags | MSG_DONTWAIT));
+  });
 }
 
 ssize_t local_recvmsg(int fd, msghdr* message, int flags) {
-  wait_to_read(fd, flags);
-  return static_cast<ssize_t>(syscall(SYS_recvmsg, fd, message, flags));
+  if (!waits_to_read(fd, flags)) return -1;
+  return told(static_cast<ssize_t>(machine_call(SYS_recvmsg, fd, message, flags)));
 }
 
 int local_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
-  wait_to_read(fd, 0);
-  const int accepted = static_cast<int>(syscall(SYS_accept4, fd, name, size, flags));
+  if (!waits_to_read(fd, 0)) return -1;
+  const int accepted = static_cast<int>(machine_call(SYS_accept4, fd, name, size, flags));
   set_kind(accepted, Kind::kLocal);
   return accepted;
 }
 
 ssize_t local_read(int fd, void* data, std::size_t size) {
-  wait_to_read(fd, 0);
-  return static_cast<ssize_t>(syscall(SYS_read, fd, data, size));
+  if (!waits_to_read(fd, 0)) return -1;
+  // Who writes may have waited for the room.
+  return told(static_cast<ssize_t>(machine_call(SYS_read, fd, data, size)));
 }
 
 ssize_t local_write(int fd, const void* data, std::size_t size) {
-  return told(static_cast<ssize_t>(syscall(SYS_write, fd, data, size)));
+  const bool may_wait = is_blocking(fd);
+  std::size_t written = 0;
+  do {
+    const ssize_t part = write_when_ready(fd, may_wait, [&] {
+      const Unwaiting unwaiting(fd);
+      return static_cast<ssize_t>(machine_call(
+          SYS_write, fd, static_cast<const unsigned char*>(data) + written, size - written));
+    });
+    if (part < 0) return written > 0 ? static_cast<ssize_t>(written) : -1;
+    written += static_cast<std::size_t>(part);
+  } while (may_wait && written < size);
+  return static_cast<ssize_t>(written);
+}
+
+bool local_waits_to_read(int fd) { return waits_to_read(fd, 0); }
+
+void note_pipe(int fd) {
+  struct stat status {};
+  if (machine_call(SYS_fstat, fd, &status) == 0 && S_ISFIFO(status.st_mode)) {
+    set_kind(fd, Kind::kLocal);
+  }
 }
 
 void local_closed() { told(0); }
@@ -130,12 +198,46 @@ SIMBENCH_CALL int socketpair(int domain, int type, int protocol, int ends[2]) {
   return result;
 }
 
+namespace {
+
+int keep_local(long fd) {
+  if (fd >= 0 && is_simulated()) set_kind(static_cast<int>(fd), Kind::kLocal);
+  return static_cast<int>(fd);
+}
+
+}  // namespace
+
+SIMBENCH_CALL int pipe2(int ends[2], int flags) noexcept {
+  const long result = machine_call(SYS_pipe2, ends, flags);
+  if (result < 0) return -1;
+  keep_local(ends[0]);
+  keep_local(ends[1]);
+  return 0;
+}
+
+SIMBENCH_CALL int pipe(int ends[2]) noexcept { return pipe2(ends, 0); }
+
+SIMBENCH_CALL int eventfd(unsigned int count, int flags) noexcept {
+  return keep_local(machine_call(SYS_eventfd2, count, flags));
+}
+
+SIMBENCH_CALL int inotify_init1(int flags) noexcept {
+  return keep_local(machine_call(SYS_inotify_init1, flags));
+}
+SIMBENCH_CALL int inotify_init() noexcept { return inotify_init1(0); }
+
+// Signals that are blocked stay with the process until they are read here.
+SIMBENCH_CALL int signalfd(int fd, const sigset_t* mask, int flags) noexcept {
+  const long result = machine_call(SYS_signalfd4, fd, mask, 8, flags);
+  return fd < 0 ? keep_local(result) : static_cast<int>(result);
+}
+
 SIMBENCH_CALL int unlink(const char* path) {
-  return static_cast<int>(syscall(SYS_unlink, own_path(path)));
+  return static_cast<int>(machine_call(SYS_unlink, own_path(path)));
 }
 
 SIMBENCH_CALL int chmod(const char* path, mode_t mode) {
-  return static_cast<int>(syscall(SYS_chmod, own_path(path), mode));
+  return static_cast<int>(machine_call(SYS_chmod, own_path(path), mode));
 }
 
 }  // namespace simbench::shim

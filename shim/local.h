@@ -1,8 +1,9 @@
-// Sockets between the programs of a host: Unix-domain sockets, which are the real ones.
+// What the threads and processes of a host have between them, and the kernel keeps: Unix-domain
+// sockets, pipes, eventfd(), signalfd(), inotify.
 //
 // Paths below /var/run and /run are those of the program's working folder instead, so that hosts do
-// not meet there. A program that waits for such a socket waits in simulated time: whoever writes to
-// one, connects or closes it tells the world, which lets the others of its host look again.
+// not meet there. A thread that waits for such a descriptor waits in simulated time: whoever reads,
+// writes, connects or closes one tells the world, which lets the others of its host look again.
 //
 //   const int fd = local_socket(AF_UNIX, SOCK_DGRAM, 0);
 //   const sockaddr_un name{.sun_family = AF_UNIX, .sun_path = "./ptp4l"};
@@ -30,5 +31,9 @@ ssize_t local_write(int fd, const void* data, std::size_t size);
 
 // The descriptor has been closed.
 void local_closed();
+// For a blocking read by another call; false with errno.
+bool local_waits_to_read(int fd);
+// It is local if it is a pipe.
+void note_pipe(int fd);
 
 }  // namespace simbench::shim

@@ -1,9 +1,15 @@
 // What a program in the simulated world says to it, and what the world answers.
 //
-// Each process has one socket to the world (SOCK_SEQPACKET), whose number is in the environment
-// variable kLinkVariable. The shim sends a request and waits for its reply; time stands still until
-// a process asks for something that takes time. Both ends are one machine: integers are in its byte
-// order, and struct timex is the kernel's.
+// Each thread of each process has a socket to the world of its own (SOCK_SEQPACKET); the number of
+// a program's first is in the environment variable kLinkVariable. The shim sends a request and
+// waits for its reply; time stands still until a thread asks for something that takes time. The
+// world replies to one thread at a time and then waits for what that asks next, so that one runs
+// at a time. Both ends are one machine: integers are in its byte order, and struct timex is the
+// kernel's.
+//
+// A new thread or process is announced (kNewThread, kNewProcess) with the world's end of its link,
+// and is stopped at its first request, kHello, until its turn has come. A process has a copy of
+// its parent's descriptors, as with fork().
 //
 // A request or reply is its struct, then `size` bytes of data. Descriptors have numbers that the
 // shim gives them, the program's own if it has no duplicates. Times are nanoseconds. `error` is an
@@ -23,12 +29,14 @@
 namespace simbench::shim {
 
 inline constexpr char kLinkVariable[] = "SIMBENCH_LINK";
+// What a program that was started by another has of its descriptors: "fd:kind:number ...".
+inline constexpr char kDescriptorsVariable[] = "SIMBENCH_DESCRIPTORS";
 inline constexpr std::size_t kMostData = 65536;
 // The descriptor of the clock's page, where only the clock is the world's.
 inline constexpr int kClockPage = 201;
 
 enum class Call : std::uint32_t {
-  kHello,        // -> Identity
+  kHello,        // a: 1: after exec(), data: int32[], the descriptors that are left -> Identity
   kNote,         // data: a text about what cannot be simulated; the program ends
   kReadClock,    // a: clockid -> value
   kSetClock,     // a: clockid, b: its new reading
@@ -67,6 +75,23 @@ enum class Call : std::uint32_t {
   kQuerySignalTimer,  // fd -> data: TimerSetting
   kDropSignalTimer,   // fd
   kTakeExpirations,   // -> data: Expiration[], of what the shim has not yet heard of
+  // Threads and processes.
+  kNewThread,      // with a descriptor: its link -> value: its number; EAGAIN: there are too many
+  kNewProcess,     // likewise
+  kStarted,        // a: its number, b: what the machine calls it; 0: it could not be started
+  kEndThread,      // b: what the machine calls the thread; there is no reply
+  kExecute,        // the other threads of the process end
+  kSignal,         // a: a process, b: a signal; 0: none -> ESRCH
+  kLookAtSignals,  // a: a process, which may have one that was made by the machine
+  kFindProcess,    // a: a process -> value: what the machine calls it; b: 1: the other way round
+  kWaitForWake,    // a: Deadline, b: its time, data: Lock -> ETIMEDOUT, EINTR
+  kWake,           // a: how many at most, data: Lock -> value: how many
+  kRequeue,  // a: how many at most, data: Lock, Lock: where the others wait -> value: how many
+             // that were woken or moved; b: how many of these are moved at most
+  // Sets of epoll().
+  kOpenEpoll,     // fd
+  kControlEpoll,  // fd, a: EPOLL_CTL_..., data: EpollItem
+  kTakeEvents,    // fd, a: how many at most -> data: EpollItem[]
 };
 
 // When a wait ends without anything being ready.
@@ -97,8 +122,11 @@ struct Request {
   std::uint32_t flags = 0;  // WaitFlag
 };
 
-// In a reply's error: signal timers have expired (kTakeExpirations).
+// In a reply's error: signal timers have expired (kTakeExpirations); the process may have a signal
+// of the machine's; another thread of the host waits for real descriptors (kLocalActivity).
 inline constexpr std::int32_t kHasExpirations = 1 << 30;
+inline constexpr std::int32_t kHasSignals = 1 << 29;
+inline constexpr std::int32_t kIsWatched = 1 << 28;
 
 // A wait that watches real descriptors too ends with EAGAIN when another program of the host may
 // have made one ready. Its data is then what is left until the deadline (int64), as with EINTR.
@@ -112,6 +140,8 @@ struct Reply {
 
 struct Identity {
   std::int32_t process = 0;         // what getpid() is
+  std::int32_t parent = 0;          // what getppid() is
+  std::int32_t thread = 0;          // what gettid() is
   std::uint32_t address = 0;        // the host's; addresses are in host byte order
   std::uint32_t netmask = 0;        // of its network
   std::uint32_t first_address = 0;  // of "host0"
@@ -132,6 +162,22 @@ struct Interest {
   std::int32_t fd;
   std::int16_t events;
   std::int16_t ready;
+};
+
+// A place in memory that threads wait for, as futex() has it.
+struct Lock {
+  std::uint64_t address = 0;
+  std::uint32_t bits = ~0U;
+  std::uint32_t is_shared = 0;  // with other processes, which may have it at other addresses
+};
+
+// What an epoll descriptor watches: of `number`, by the descriptor `fd`.
+struct EpollItem {
+  std::int32_t number = -1;
+  std::int32_t fd = -1;
+  std::uint32_t events = 0;
+  std::uint32_t reserved = 0;
+  std::uint64_t data = 0;
 };
 
 struct TimerSetting {

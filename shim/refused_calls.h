@@ -1,9 +1,10 @@
 // The system calls that a program of the simulated world cannot make, and what it gets instead.
 //
-// Programs ask the world through libc (shim/link.h). One that passes libc by meets a filter of the
-// kernel (processes/confinement.h), which is made of this table; the shim names the call from it
-// and the world ends the program. Calls that are not here, up to kYoungest, are the real ones;
-// younger ones are ENOSYS.
+// Programs ask the world through libc (shim/link.h). One that passes libc by, as libc itself does
+// inside, meets a filter of the kernel (processes/confinement.h), which is made of this table. The
+// shim then serves the call (shim/served_calls.h), or names it from the table and the world ends
+// the program. Calls that are not here, up to kYoungest, are the real ones; younger ones are
+// ENOSYS.
 //
 //   for (const RefusedCall& call : kRefusedCalls) {
 //     if (call.number == SYS_ptrace) print(call.name);
@@ -19,7 +20,7 @@
 namespace simbench::shim {
 
 enum class Refusal : std::uint8_t {
-  kNotIntercepted,  // the world would have served it: the program ends
+  kNotIntercepted,  // the shim serves it where it can; else the program ends
   kForbidden,       // the program ends
   kPartly,          // as kNotIntercepted, for some arguments
   kDenied,          // EPERM: programs try these, and go on
@@ -34,7 +35,8 @@ struct RefusedCall {
 };
 
 // What the shim says in the fifth argument, which the kernel does not read: of rt_sigaction(), that
-// this handler is its own; of ppoll() and rt_sigtimedwait(), that it only looks.
+// this handler is its own; of ppoll() and rt_sigtimedwait(), that it only looks; of
+// epoll_create1(), in the sixth, that the world knows of it.
 inline constexpr std::uint32_t kOfTheShim = 0x5348494D;
 
 inline constexpr int kYoungest = SYS_set_mempolicy_home_node;
@@ -50,6 +52,8 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kNotIntercepted, clock_adjtime),
     SIMBENCH_REFUSED(kNotIntercepted, gettimeofday),
     SIMBENCH_REFUSED(kPartly, clock_gettime),
+    // Chance.
+    SIMBENCH_REFUSED(kNotIntercepted, getrandom),
     // Networks.
     SIMBENCH_REFUSED(kPartly, socket),
     SIMBENCH_REFUSED(kPartly, socketpair),
@@ -58,22 +62,21 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kNotIntercepted, clock_nanosleep),
     SIMBENCH_REFUSED(kNotIntercepted, pselect6),
     SIMBENCH_REFUSED(kPartly, ppoll),
-    SIMBENCH_REFUSED(kNotIntercepted, epoll_create1),
-    SIMBENCH_REFUSED(kNotIntercepted, epoll_pwait),
+    SIMBENCH_REFUSED(kPartly, epoll_create1),
+    SIMBENCH_REFUSED(kPartly, epoll_pwait),
     SIMBENCH_REFUSED(kNotIntercepted, epoll_pwait2),
     SIMBENCH_REFUSED(kNotIntercepted, timerfd_create),
     SIMBENCH_REFUSED(kNotIntercepted, timer_create),
     SIMBENCH_REFUSED(kNotIntercepted, setitimer),
     SIMBENCH_REFUSED(kNotIntercepted, rt_sigsuspend),
     SIMBENCH_REFUSED(kPartly, rt_sigtimedwait),
-    SIMBENCH_REFUSED(kPartly, futex),
+    SIMBENCH_REFUSED(kNotIntercepted, futex),
     SIMBENCH_REFUSED(kAbsent, futex_waitv),
     SIMBENCH_REFUSED(kAbsent, io_uring_setup),
     SIMBENCH_REFUSED(kAbsent, io_setup),
     // Other processes.
     SIMBENCH_REFUSED(kPartly, clone),
     SIMBENCH_REFUSED(kAbsent, clone3),
-    SIMBENCH_REFUSED(kPartly, execve),
     SIMBENCH_REFUSED(kForbidden, execveat),
     SIMBENCH_REFUSED(kForbidden, ptrace),
     SIMBENCH_REFUSED(kForbidden, process_vm_readv),
@@ -169,8 +172,8 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kNotIntercepted, epoll_wait),
     SIMBENCH_REFUSED(kNotIntercepted, alarm),
     SIMBENCH_REFUSED(kNotIntercepted, pause),
-    SIMBENCH_REFUSED(kForbidden, fork),
-    SIMBENCH_REFUSED(kForbidden, vfork),
+    SIMBENCH_REFUSED(kNotIntercepted, fork),
+    SIMBENCH_REFUSED(kNotIntercepted, vfork),
     SIMBENCH_REFUSED(kForbidden, kexec_file_load),
     SIMBENCH_REFUSED(kForbidden, iopl),
     SIMBENCH_REFUSED(kForbidden, ioperm),

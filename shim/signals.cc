@@ -7,7 +7,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/signalfd.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <time.h>
@@ -31,11 +30,9 @@ struct SignalTimer {
   int overrun = 0;
 };
 SignalTimer timers[kMostTimers];
-HandledSignals handled;
+__thread HandledSignals handled __attribute__((tls_model("initial-exec")));
 
-void count_handler(int signal) {
-  sigset_t blocked{};
-  sigprocmask(SIG_SETMASK, nullptr, &blocked);
+void count_handler(int signal, const sigset_t& blocked) {
   struct sigaction action {};
   sigaction(signal, nullptr, &action);
   const bool has_handler = (action.sa_flags & SA_SIGINFO) != 0 ||
@@ -59,7 +56,9 @@ void make_signal(int number, int times) {
     return;
   }
   timer.overrun = times - 1;
-  count_handler(timer.signal);
+  sigset_t blocked{};
+  sigprocmask(SIG_SETMASK, nullptr, &blocked);
+  count_handler(timer.signal, blocked);
   siginfo_t info{};
   info.si_signo = timer.signal;
   info.si_code = number == kIntervalTimer ? SI_KERNEL : SI_TIMER;
@@ -68,7 +67,9 @@ void make_signal(int number, int times) {
     info.si_overrun = timer.overrun;
     info.si_value = timer.value;
   }
-  syscall(SYS_rt_tgsigqueueinfo, syscall(SYS_getpid), syscall(SYS_gettid), timer.signal, &info);
+  const long made = machine_call(SYS_rt_tgsigqueueinfo, machine_call(SYS_getpid),
+                                 machine_call(SYS_gettid), timer.signal, &info);
+  if (made < 0) raise(timer.signal);  // of a forked process
 }
 
 int set_timer(int number, bool is_absolute, const itimerspec& setting, itimerspec* before) {
@@ -149,6 +150,20 @@ bool is_own_timer(timer_t id) {
 }  // namespace
 
 HandledSignals handled_signals() { return handled; }
+
+void count_handlers(const sigset_t& blocked) {
+  sigset_t pending{};
+  sigpending(&pending);
+  for (int signal = 1; signal < NSIG; ++signal) {
+    if (sigismember(&pending, signal) == 1 && sigismember(&blocked, signal) == 0) {
+      count_handler(signal, blocked);
+    }
+  }
+}
+
+void forget_signal_timers() {
+  for (SignalTimer& timer : timers) timer = {};
+}
 
 void make_signals() {
   const int before = errno;
@@ -279,7 +294,7 @@ SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const times
   }
   for (;;) {
     const timespec none{};
-    const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
+    const long taken = machine_call(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
     if (taken > 0 || errno != EAGAIN) return static_cast<int>(taken);
     const std::uint64_t before = handled.all;
     if (ask(wait) >= 0) return refuse(EAGAIN);
@@ -301,18 +316,6 @@ SIMBENCH_CALL int sigwait(const sigset_t* set, int* signal) {
     *signal = taken;
     return 0;
   }
-}
-
-// getpid() is the world's number: nobody else has one here.
-SIMBENCH_CALL int kill(pid_t process, int signal) {
-  if (!is_simulated()) return SIMBENCH_REAL(kill)(process, signal);
-  if (process == 0 || process == identity().process) return raise(signal);
-  return refuse(ESRCH);
-}
-
-SIMBENCH_CALL int signalfd(int fd, const sigset_t* mask, int flags) {
-  if (is_simulated()) give_up("signalfd()");
-  return SIMBENCH_REAL(signalfd)(fd, mask, flags);
 }
 
 }  // namespace simbench::shim

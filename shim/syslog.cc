@@ -26,7 +26,7 @@ void log_message(int priority, const char* format, va_list arguments) {
   int size = begin + (body < 0 ? 0 : body);
   if (size > kMostMessage - 2) size = kMostMessage - 2;
   if (size == 0 || text[size - 1] != '\n') text[size++] = '\n';
-  syscall(SYS_write, STDERR_FILENO, text, size);
+  machine_call(SYS_write, STDERR_FILENO, text, size);
 }
 
 }  // namespace

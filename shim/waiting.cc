@@ -1,16 +1,18 @@
-// Waiting: sleeps, select, poll, epoll and timers.
+// Waiting: sleeps, select and poll.
 //
 // A wait asks the world which of its descriptors are ready, and how long to wait. Real descriptors
-// (files, pipes, Unix-domain sockets) are looked at before and after, and whenever another program
+// (files, pipes, Unix-domain sockets) are looked at before and after, and whenever another thread
 // of the host has done something that may have made one ready.
+#include "shim/waiting.h"
+
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/epoll.h>
 #include <sys/select.h>
 #include <sys/syscall.h>
-#include <sys/timerfd.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -25,47 +27,14 @@ namespace {
 
 constexpr int kMostInterests = 1024;
 
-struct Until {
-  Deadline kind = Deadline::kNever;
-  std::int64_t ns = 0;
-};
-
 Until after(const timespec* timeout) {
   return timeout == nullptr ? Until{} : Until{Deadline::kAfter, nanoseconds(*timeout)};
 }
 
-Until after_ms(int timeout_ms) {
-  return timeout_ms < 0 ? Until{} : Until{Deadline::kAfter, timeout_ms * std::int64_t{1'000'000}};
-}
-
 int look_at_real(pollfd* interests, nfds_t count) {
   const timespec now{};
-  return static_cast<int>(syscall(SYS_ppoll, interests, count, &now, nullptr, kOfTheShim));
+  return static_cast<int>(machine_call(SYS_ppoll, interests, count, &now, nullptr, kOfTheShim));
 }
-
-// The signal mask of ppoll() and its kin, while they wait.
-class Mask {
- public:
-  explicit Mask(const sigset_t* wanted) : is_set_(wanted != nullptr) {
-    if (!is_set_) return;
-    sigset_t pending{};
-    sigpending(&pending);
-    for (int signal = 1; signal < NSIG; ++signal) {
-      has_handled_ |= sigismember(&pending, signal) == 1 && sigismember(wanted, signal) == 0;
-    }
-    sigprocmask(SIG_SETMASK, wanted, &before_);
-  }
-  ~Mask() {
-    if (is_set_) sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
-  // Whether it let a signal through that had waited.
-  bool has_handled() const { return has_handled_; }
-
- private:
-  bool is_set_;
-  bool has_handled_ = false;
-  sigset_t before_{};
-};
 
 // Asks until something is ready or the time has come. Fails with EINTR once a handler has run, and
 // with EAGAIN when real descriptors should be looked at; what is left goes to `until` and
@@ -81,56 +50,103 @@ std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Receiv
                                     .flags = watches_real ? kWatchesReal : 0U},
                                    interests, {}, &reply);
     if (ready >= 0 || (errno != EINTR && errno != EAGAIN)) return ready;
-    const int reason = handled_signals().all != before ? EINTR : errno;
+    int reason = handled_signals().all != before ? EINTR : errno;
     std::int64_t left = 0;
     memcpy(&left, answer.data, sizeof left);
     if (left_ns != nullptr) *left_ns = left;
     if (until.kind == Deadline::kAfter) until.ns = left;
-    if (reason == EINTR && handled_signals().all == before) continue;
+    if (reason == EINTR && handled_signals().all == before) {
+      if (!watches_real) continue;
+      reason = EAGAIN;  // the signal may be what signalfd() waits for
+    }
     return refuse(reason);
   }
 }
 
-// As poll(): which of the descriptors are ready, at the latest then.
-int wait(pollfd* interests, nfds_t count, Until until, const sigset_t* signals = nullptr,
-         std::int64_t* left_ns = nullptr) {
-  const Mask mask(signals);
-  if (mask.has_handled()) return refuse(EINTR);
-  if (count > kMostInterests) return refuse(EINVAL);
-  pollfd real[kMostInterests];
-  Interest simulated[kMostInterests];
+bool is_real(Kind kind) { return !is_of_the_world(kind) || kind == Kind::kEpoll; }
+
+// What of these the world and the kernel watch.
+struct Watched {
+  pollfd* real;
+  Interest* simulated;
   std::size_t asked = 0;
   bool watches_real = false;
+};
+
+void divide(const pollfd* interests, nfds_t count, Watched& watched) {
   for (nfds_t i = 0; i < count; ++i) {
-    const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
-    watches_real |= !is_ours && interests[i].fd >= 0;
-    real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
-    if (is_ours) {
-      simulated[asked++] = {
-          .fd = number_of(interests[i].fd), .events = interests[i].events, .ready = 0};
-    }
+    const Kind kind = kind_of(interests[i].fd);
+    const bool has_real = is_real(kind);
+    watched.watches_real |= has_real && interests[i].fd >= 0;
+    watched.real[i] = {
+        .fd = has_real ? interests[i].fd : -1, .events = interests[i].events, .revents = 0};
+    if (!is_of_the_world(kind)) continue;
+    watched.simulated[watched.asked++] = {
+        .fd = number_of(interests[i].fd), .events = interests[i].events, .ready = 0};
   }
-  Interest answered[kMostInterests];
+}
+
+}  // namespace
+
+Until after_ms(int timeout_ms) {
+  return timeout_ms < 0 ? Until{} : Until{Deadline::kAfter, timeout_ms * std::int64_t{1'000'000}};
+}
+
+Mask::Mask(const sigset_t* wanted) : is_set_(wanted != nullptr) {
+  if (!is_set_) return;
+  sigset_t pending{};
+  sigpending(&pending);
+  for (int signal = 1; signal < NSIG; ++signal) {
+    has_handled_ |= sigismember(&pending, signal) == 1 && sigismember(wanted, signal) == 0;
+  }
+  sigprocmask(SIG_SETMASK, wanted, &before_);
+}
+
+Mask::~Mask() {
+  if (is_set_) sigprocmask(SIG_SETMASK, &before_, nullptr);
+}
+
+int wait(pollfd* interests, nfds_t count, Until& until, std::int64_t* left_ns) {
+  pthread_testcancel();
+  if (count > kMostInterests) return refuse(EINVAL);
+  const std::size_t places = count + 1;  // what is left of the time needs one too
+  Watched watched{.real = static_cast<pollfd*>(__builtin_alloca(places * sizeof(pollfd))),
+                  .simulated = static_cast<Interest*>(__builtin_alloca(places * sizeof(Interest)))};
+  auto* answered = static_cast<Interest*>(__builtin_alloca(places * sizeof(Interest)));
+  divide(interests, count, watched);
   std::int64_t is_ready = -1;
   while (is_ready < 0) {
-    if (watches_real && look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
-    is_ready = ask_to_wait(until, watches_real, {simulated, asked * sizeof simulated[0]},
-                           {.data = answered, .capacity = sizeof answered}, left_ns);
-    if (is_ready < 0 && errno != EAGAIN) return -1;
+    if (watched.watches_real && look_at_real(watched.real, count) > 0)
+      until = {Deadline::kAfter, 0};
+    is_ready = ask_to_wait(until, watched.watches_real,
+                           {watched.simulated, watched.asked * sizeof(Interest)},
+                           {.data = answered, .capacity = places * sizeof(Interest)}, left_ns);
+    if (is_ready < 0 && errno != EAGAIN) {
+      pthread_testcancel();
+      return -1;
+    }
   }
-  if (watches_real) look_at_real(real, count);
+  if (watched.watches_real) look_at_real(watched.real, count);
   int ready = 0;
   std::size_t looked_at = 0;
   for (nfds_t i = 0; i < count; ++i) {
     const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
-    interests[i].revents = is_ours ? answered[looked_at++].ready : real[i].revents;
+    interests[i].revents = watched.real[i].revents;
+    if (is_ours) interests[i].revents |= answered[looked_at++].ready;
     ready += interests[i].revents != 0;
   }
   return ready;
 }
 
+namespace {
+
+int wait_masked(pollfd* interests, nfds_t count, Until until, const sigset_t* signals) {
+  const Mask mask(signals);
+  return mask.has_handled() ? refuse(EINTR) : wait(interests, count, until);
+}
+
 int sleep_until(Until until, std::int64_t* left_ns = nullptr) {
-  return wait(nullptr, 0, until, nullptr, left_ns) < 0 ? -1 : 0;
+  return wait(nullptr, 0, until, left_ns) < 0 ? -1 : 0;
 }
 
 }  // namespace
@@ -190,7 +206,7 @@ SIMBENCH_CALL unsigned int sleep(unsigned int seconds) {
 
 SIMBENCH_CALL int poll(pollfd* interests, nfds_t count, int timeout_ms) {
   if (!is_simulated()) return SIMBENCH_REAL(poll)(interests, count, timeout_ms);
-  return wait(interests, count, after_ms(timeout_ms));
+  return wait_masked(interests, count, after_ms(timeout_ms), nullptr);
 }
 
 SIMBENCH_CALL int poll_checked(pollfd* interests, nfds_t count, int timeout_ms,
@@ -203,7 +219,8 @@ int poll_checked(pollfd* interests, nfds_t count, int timeout_ms, std::size_t si
 SIMBENCH_CALL int ppoll(pollfd* interests, nfds_t count, const timespec* timeout,
                         const sigset_t* mask) {
   if (!is_simulated()) return SIMBENCH_REAL(ppoll)(interests, count, timeout, mask);
-  return wait(interests, count, after(timeout), mask);
+  if (timeout != nullptr && !is_time(*timeout)) return refuse(EINVAL);
+  return wait_masked(interests, count, after(timeout), mask);
 }
 
 SIMBENCH_CALL int ppoll_checked(pollfd* interests, nfds_t count, const timespec* timeout,
@@ -214,33 +231,42 @@ int ppoll_checked(pollfd* interests, nfds_t count, const timespec* timeout, cons
   return ppoll(interests, count, timeout, mask);
 }
 
+namespace {
+
+bool has(fd_set* set, int fd) { return set != nullptr && FD_ISSET(fd, set); }
+
+// Leaves in the set, where it was asked for, only what is so; returns how many that are.
+int answer(const pollfd& interest, short asked, int ready, fd_set* set) {
+  if ((interest.events & asked) == 0) return 0;
+  if ((interest.revents & ready) != 0) return 1;
+  FD_CLR(interest.fd, set);
+  return 0;
+}
+
+}  // namespace
+
 SIMBENCH_CALL int pselect(int count, fd_set* readers, fd_set* writers, fd_set* exceptions,
                           const timespec* timeout, const sigset_t* mask) {
   if (!is_simulated()) {
     return SIMBENCH_REAL(pselect)(count, readers, writers, exceptions, timeout, mask);
   }
-  pollfd interests[FD_SETSIZE];
+  if (count < 0 || (timeout != nullptr && !is_time(*timeout))) return refuse(EINVAL);
+  const int asked_for = count < kMostInterests ? count : kMostInterests;
+  pollfd interests[kMostInterests];
   nfds_t asked = 0;
-  const auto has = [](int fd, fd_set* set) { return set != nullptr && FD_ISSET(fd, set); };
-  for (int fd = 0; fd < count && fd < FD_SETSIZE; ++fd) {
-    const int events = (has(fd, readers) ? POLLIN : 0) | (has(fd, writers) ? POLLOUT : 0) |
-                       (has(fd, exceptions) ? POLLPRI : 0);
-    if (events != 0) interests[asked++] = {fd, static_cast<short>(events), 0};
+  for (int fd = 0; fd < asked_for; ++fd) {
+    const int events = (has(readers, fd) ? POLLIN : 0) | (has(writers, fd) ? POLLOUT : 0) |
+                       (has(exceptions, fd) ? POLLPRI : 0);
+    if (events == 0) continue;
+    if (machine_call(SYS_fcntl, fd, F_GETFD) < 0) return refuse(EBADF);
+    interests[asked++] = {.fd = fd, .events = static_cast<short>(events), .revents = 0};
   }
-  if (wait(interests, asked, after(timeout), mask) < 0) return -1;
-  for (fd_set* set : {readers, writers, exceptions}) {
-    if (set != nullptr) FD_ZERO(set);
-  }
+  if (wait_masked(interests, asked, after(timeout), mask) < 0) return -1;
   int ready = 0;
-  const auto answer = [&ready](const pollfd& interest, short asked_for, int is, fd_set* set) {
-    if ((interest.events & asked_for) == 0 || (interest.revents & is) == 0) return;
-    FD_SET(interest.fd, set);
-    ++ready;
-  };
   for (nfds_t i = 0; i < asked; ++i) {
-    answer(interests[i], POLLIN, POLLIN | POLLHUP | POLLERR, readers);
-    answer(interests[i], POLLOUT, POLLOUT | POLLERR, writers);
-    answer(interests[i], POLLPRI, POLLPRI, exceptions);
+    ready += answer(interests[i], POLLIN, POLLIN | POLLHUP | POLLERR, readers);
+    ready += answer(interests[i], POLLOUT, POLLOUT | POLLERR, writers);
+    ready += answer(interests[i], POLLPRI, POLLPRI, exceptions);
   }
   return ready;
 }
@@ -266,115 +292,10 @@ SIMBENCH_CALL int select(int count, fd_set* readers, fd_set* writers, fd_set* ex
   return ready;
 }
 
-namespace {
-
-// The descriptors that an epoll descriptor watches; few programs have more than one.
-struct Watched {
-  int epoll = -1;
-  int fd = -1;
-  epoll_event event{};
-};
-Watched watched[kMostInterests];
-
-Watched* find_watched(int epoll, int fd) {
-  for (Watched& each : watched) {
-    if (each.epoll == epoll && each.fd == fd) return &each;
-  }
-  return nullptr;
-}
-
-}  // namespace
-
-SIMBENCH_CALL int epoll_create1(int flags) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_create1)(flags);
-  const int fd = open_descriptor(Kind::kEpoll, false, (flags & EPOLL_CLOEXEC) != 0);
-  for (Watched& each : watched) {
-    if (each.epoll == fd) each = {};  // of a descriptor of this number that was closed
-  }
-  return fd;
-}
-
-SIMBENCH_CALL int epoll_create(int size) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_create)(size);
-  return epoll_create1(0);
-}
-
-SIMBENCH_CALL int epoll_ctl(int epoll, int operation, int fd, epoll_event* event) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_ctl)(epoll, operation, fd, event);
-  Watched* found = find_watched(epoll, fd);
-  if ((operation == EPOLL_CTL_ADD) == (found != nullptr)) {
-    return refuse(found != nullptr ? EEXIST : ENOENT);
-  }
-  if (operation == EPOLL_CTL_DEL) {
-    *found = {};
-    return 0;
-  }
-  if ((event->events & (EPOLLET | EPOLLONESHOT)) != 0) {
-    give_up("epoll with EPOLLET or EPOLLONESHOT");
-  }
-  if (found == nullptr) found = find_watched(-1, -1);
-  if (found == nullptr) return refuse(ENOSPC);
-  *found = {.epoll = epoll, .fd = fd, .event = *event};
-  return 0;
-}
-
-SIMBENCH_CALL int epoll_pwait(int epoll, epoll_event* events, int most, int timeout_ms,
-                              const sigset_t* mask) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_pwait)(epoll, events, most, timeout_ms, mask);
-  pollfd interests[kMostInterests];
-  nfds_t asked = 0;
-  for (const Watched& each : watched) {
-    if (each.epoll != epoll) continue;
-    interests[asked++] = {each.fd, static_cast<short>(each.event.events), 0};
-  }
-  if (wait(interests, asked, after_ms(timeout_ms), mask) < 0) return -1;
-  int ready = 0;
-  for (nfds_t i = 0; i < asked && ready < most; ++i) {
-    if (interests[i].revents == 0) continue;
-    events[ready].events = static_cast<std::uint32_t>(interests[i].revents);
-    events[ready++].data = find_watched(epoll, interests[i].fd)->event.data;
-  }
-  return ready;
-}
-
-SIMBENCH_CALL int epoll_wait(int epoll, epoll_event* events, int most, int timeout_ms) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_wait)(epoll, events, most, timeout_ms);
-  return epoll_pwait(epoll, events, most, timeout_ms, nullptr);
-}
-
-namespace {
-
-bool is_setting(const itimerspec& setting) {
-  return is_time(setting.it_value) && is_time(setting.it_interval);
-}
-
-itimerspec from_setting(const TimerSetting& setting) {
-  return {.it_interval = to_timespec(setting.interval), .it_value = to_timespec(setting.left)};
-}
-
-}  // namespace
-
-int set_world_timer(const Request& request, const itimerspec& setting, itimerspec* before) {
-  if (!is_setting(setting)) return refuse(EINVAL);
-  const TimerSetting wanted{.left = nanoseconds(setting.it_value),
-                            .interval = nanoseconds(setting.it_interval)};
-  TimerSetting old{};
-  if (ask_for(request, old, {&wanted, sizeof wanted}) < 0) return -1;
-  if (before != nullptr) *before = from_setting(old);
-  return 0;
-}
-
-int query_world_timer(const Request& request, itimerspec& setting) {
-  TimerSetting now{};
-  if (ask_for(request, now) < 0) return -1;
-  setting = from_setting(now);
-  return 0;
-}
-
-bool wait_for_input(int fd, std::int64_t timeout_ns) {
+bool wait_for_ready(int fd, short events, std::int64_t timeout_ns) {
   const std::uint64_t before = handled_signals().interrupting;
-  pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
-  const Until until = timeout_ns < 0 ? Until{} : Until{Deadline::kAfter, timeout_ns};
+  pollfd interest{.fd = fd, .events = events, .revents = 0};
+  Until until = timeout_ns < 0 ? Until{} : Until{Deadline::kAfter, timeout_ns};
   for (;;) {
     const int ready = wait(&interest, 1, until);
     if (ready > 0) return true;
@@ -386,52 +307,23 @@ bool wait_for_input(int fd, std::int64_t timeout_ns) {
   }
 }
 
-std::int64_t read_timer(int fd, void* data, std::size_t size) {
-  if (size < sizeof(std::uint64_t)) return refuse(EINVAL);
+bool wait_for_input(int fd, std::int64_t timeout_ns) {
+  return wait_for_ready(fd, POLLIN, timeout_ns);
+}
+
+bool wait_for_activity() {
+  pthread_testcancel();
   for (;;) {
-    const std::int64_t expirations = ask({.call = Call::kReadTimer, .fd = fd});
-    if (expirations >= 0) {
-      memcpy(data, &expirations, sizeof expirations);
-      return sizeof expirations;
+    const HandledSignals before = handled_signals();
+    ask({.call = Call::kWait,
+         .a = static_cast<std::int64_t>(Deadline::kNever),
+         .flags = kWatchesReal});
+    if (handled_signals().interrupting != before.interrupting) {
+      errno = EINTR;
+      return false;
     }
-    if (errno != EAGAIN || !is_blocking(fd) || !wait_for_input(fd, -1)) return -1;
+    return true;
   }
-}
-
-SIMBENCH_CALL int timerfd_create(int clock, int flags) {
-  if (is_own_clock(clock)) {
-    const int timer = SIMBENCH_REAL(timerfd_create)(CLOCK_MONOTONIC, flags);
-    set_kind(timer, Kind::kOwnTimer);
-    return timer;
-  }
-  if (!is_simulated()) return SIMBENCH_REAL(timerfd_create)(clock, flags);
-  const int fd =
-      open_descriptor(Kind::kTimer, (flags & TFD_NONBLOCK) != 0, (flags & TFD_CLOEXEC) != 0);
-  if (fd >= 0 && ask({.call = Call::kOpenTimer, .fd = fd, .a = clock}) < 0) {
-    discard_descriptor(fd);
-    return -1;
-  }
-  return fd;
-}
-
-SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
-                                  itimerspec* before) {
-  if (kind_of(fd) == Kind::kOwnTimer && is_setting(*setting)) {
-    itimerspec machine = *setting;
-    const bool is_armed = setting->it_value.tv_sec != 0 || setting->it_value.tv_nsec != 0;
-    const bool converts = is_armed && (flags & TFD_TIMER_ABSTIME) != 0;
-    if (converts) machine.it_value = machine_time_of(setting->it_value);
-    return SIMBENCH_REAL(timerfd_settime)(fd, flags & TFD_TIMER_ABSTIME, &machine, before);
-  }
-  if (!is_simulated()) return SIMBENCH_REAL(timerfd_settime)(fd, flags, setting, before);
-  const bool is_absolute = (flags & TFD_TIMER_ABSTIME) != 0;
-  return set_world_timer({.call = Call::kSetTimer, .fd = fd, .a = is_absolute ? 1 : 0}, *setting,
-                         before);
-}
-
-SIMBENCH_CALL int timerfd_gettime(int fd, itimerspec* setting) {
-  if (!is_simulated()) return SIMBENCH_REAL(timerfd_gettime)(fd, setting);
-  return query_world_timer({.call = Call::kQueryTimer, .fd = fd}, *setting);
 }
 
 }  // namespace simbench::shim

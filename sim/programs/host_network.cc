@@ -214,11 +214,6 @@ Task<void> HostNetwork::stamp_departures() {
   }
 }
 
-void HostNetwork::report_local_activity() {
-  ++local_activity_;
-  for (WaitPoint* each : watchers_) each->notify();
-}
-
 Task<void> HostNetwork::pump(PeerId peer) {
   SimChannel& channel = host_.datagram_channel(peer);
   for (;;) {

@@ -100,12 +100,6 @@ class HostNetwork {
   CardStamping card_stamping() const { return card_stamping_; }
   void set_card_stamping(CardStamping stamping) { card_stamping_ = stamping; }
 
-  // What the host's programs do to each other over real sockets: counted, and told to those that
-  // wait. A watcher must outlive the programs.
-  void watch_local_activity(WaitPoint& watcher) { watchers_.push_back(&watcher); }
-  void report_local_activity();
-  std::uint64_t local_activity() const { return local_activity_; }
-
   HostStreams& streams() { return streams_; }
 
   // Receives from a peer, for ever.
@@ -147,8 +141,6 @@ class HostNetwork {
   std::deque<Leaving> leaving_;
   WaitPoint has_left_;
   HostStreams streams_;
-  std::vector<WaitPoint*> watchers_;
-  std::uint64_t local_activity_ = 0;
 };
 
 }  // namespace simbench::sim

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <linux/ptp_clock.h>
 #include <poll.h>
-#include <sys/socket.h>
+#include <signal.h>
+#include <sys/syscall.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -15,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "recording/text_fields.h"
+#include "sim/programs/program_thread.h"
 
 namespace simbench::sim {
 namespace {
@@ -27,7 +29,8 @@ using shim::Call;
 constexpr Nanoseconds kLeastReading(20);
 
 constexpr std::size_t kMostSignalTimers = 64;
-constexpr std::size_t kMostNote = 400;  // bytes of it in the row's note
+
+bool is_known(std::int64_t clock) { return clock >= CLOCK_REALTIME && clock <= CLOCK_TAI; }
 
 bool is_system(std::int64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI ||
@@ -36,26 +39,53 @@ bool is_system(std::int64_t clock) {
 
 }  // namespace
 
-Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
-                 const Child::Settings& settings, std::uint32_t number)
-    : host_(host),
-      network_(network),
-      kernel_(kernel),
-      card_(card),
+Process::Process(const Surroundings& surroundings, std::int32_t number, std::int32_t parent)
+    : around_(surroundings),
       number_(number),
-      chance_(host.world().run_seed, host.name(fmt::format("program {}", number))),
-      woken_(host.world().context, host.name(fmt::format("program {} waits", number))),
-      child_(settings),
-      counted_since_(host.true_now()) {
-  network_.watch_local_activity(woken_);
+      parent_(parent),
+      counted_since_(surroundings.host.true_now()) {}
+
+Process::Process(const Process& parent, std::int32_t number)
+    : around_(parent.around_),
+      number_(number),
+      parent_(parent.number_),
+      open_(parent.open_),
+      counted_since_(parent.around_.host.true_now()) {}
+
+Process::~Process() {
+  if (handle_ >= 0) ::close(handle_);
 }
 
-Process::~Process() { close_sockets(); }
+void Process::set_machine(pid_t machine) {
+  machine_ = machine;
+  handle_ = static_cast<int>(syscall(SYS_pidfd_open, machine, 0));
+}
+
+int Process::signal(int number) {
+  if (handle_ < 0) return ESRCH;
+  // A process that is stopped would stop the world.
+  if (number == SIGSTOP || number == SIGTSTP || number == SIGTTIN || number == SIGTTOU)
+    return EPERM;
+  if (syscall(SYS_pidfd_send_signal, handle_, number, nullptr, 0) != 0) return errno;
+  if (number != 0) look_at_signals();
+  return 0;
+}
+
+void Process::look_at_signals() {
+  ++signals_;
+  around_.wake();
+}
+
+void Process::await_end() const {
+  constexpr int kMoment = 1000;  // ms
+  pollfd interest{.fd = handle_, .events = POLLIN, .revents = 0};
+  if (handle_ >= 0) poll(&interest, 1, kMoment);
+}
 
 void Process::count_request() {
   constexpr Nanoseconds kASecond = std::chrono::seconds(1);
-  if (host_.true_now() >= counted_since_ + kASecond) {
-    counted_since_ = host_.true_now();
+  if (around_.host.true_now() >= counted_since_ + kASecond) {
+    counted_since_ = around_.host.true_now();
     asked_ = 0;
   }
   if (++asked_ > kMostASecond) {
@@ -63,37 +93,7 @@ void Process::count_request() {
   }
 }
 
-Task<void> Process::serve() {
-  while (!is_stopped_) {
-    std::optional<ChildRequest> request = child_.next();
-    if (!request) break;
-    std::optional<Answer> given;
-    try {
-      if (!request->is_whole) throw BadRequest("sent a request of a wrong size");
-      count_request();
-      given = co_await answer(std::move(*request));
-    } catch (const BadRequest& bad) {
-      ending_ = bad.what();
-    }
-    if (!given) break;
-    const std::int32_t told = has_expirations() ? shim::kHasExpirations : 0;
-    child_.reply(given->value, given->error | told, given->data);
-  }
-  if (!is_stopped_) {
-    network_.report_local_activity();
-    co_await close_streams();
-    close_sockets();
-  }
-  const std::string how = child_.ending(ending_);
-  if (!is_stopped_) ending_ = printable_name(how);
-}
-
-void Process::stop() {
-  is_stopped_ = true;
-  woken_.notify();
-}
-
-Task<Process::Answer> Process::answer(ChildRequest request) {
+Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest request) {
   if (is_of_stream(request)) co_return co_await of_stream(std::move(request));
   switch (request.head.call) {
     case Call::kReadClock:
@@ -105,7 +105,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kSend:
       co_return co_await send(std::move(request));
     case Call::kWait:
-      co_return co_await wait(std::move(request));
+      co_return co_await wait(thread, std::move(request));
     case Call::kSetOption:
     case Call::kBind:
     case Call::kConnect:
@@ -134,10 +134,19 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kReadCard:
       co_return co_await read_card(request.head.a);
     case Call::kLocalActivity:
-      network_.report_local_activity();
+      around_.processes.report_activity();
       co_return Answer{};
     case Call::kHello:
-      co_return Answer{.data = bytes_of(identity())};
+      if (request.head.a != 0) co_await keep_only(request.data);
+      co_return Answer{.data = bytes_of(identity(thread))};
+    case Call::kWaitForWake:
+      co_return co_await wait_for_wake(thread, request);
+    case Call::kOpenEpoll:
+      co_return open_set(request.head.fd);
+    case Call::kControlEpoll:
+      co_return control_set(request);
+    case Call::kTakeEvents:
+      co_return take_events(request);
     case Call::kRandom:
       co_return random_bytes(request.head.a);
     case Call::kOpenSocket:
@@ -145,24 +154,25 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kOpenTimer:
       co_return open_timer(request.head.fd, request.head.a);
     case Call::kClose:
-      co_return close(request.head.fd);
-    case Call::kNote:
-      throw BadRequest(std::string(reinterpret_cast<const char*>(request.data.data()),
-                                   std::min(request.data.size(), kMostNote)));
+      co_return co_await close(request.head.fd);
+    default:
+      break;
   }
   throw BadRequest("asked what the world does not know");
 }
 
-shim::Identity Process::identity() const {
-  return {.process = static_cast<std::int32_t>(100 + number_),
-          .address = network_.address(),
+shim::Identity Process::identity(const ProgramThread& thread) const {
+  return {.process = number_,
+          .parent = parent_,
+          .thread = thread.number,
+          .address = around_.network.address(),
           .netmask = processes::kNetmask,
           .first_address = processes::kFirstAddress,
-          .hosts = static_cast<std::uint32_t>(network_.hosts()),
-          .has_card_clock = host_.nic() != nullptr ? 1U : 0U,
+          .hosts = static_cast<std::uint32_t>(around_.network.hosts()),
+          .has_card_clock = around_.host.nic() != nullptr ? 1U : 0U,
           .most_card_rate =
-              host_.nic() != nullptr
-                  ? static_cast<std::int32_t>(std::lround(host_.nic()->max_frequency_ppb()))
+              around_.host.nic() != nullptr
+                  ? static_cast<std::int32_t>(std::lround(around_.host.nic()->max_frequency_ppb()))
                   : 0};
 }
 
@@ -172,47 +182,47 @@ Process::Answer Process::random_bytes(std::int64_t count) {
   }
   Answer answer;
   answer.data.resize(static_cast<std::size_t>(count));
-  for (std::byte& byte : answer.data) byte = static_cast<std::byte>(chance_.uniform() * 256);
+  for (std::byte& byte : answer.data) byte = static_cast<std::byte>(around_.chance.uniform() * 256);
   return answer;
 }
 
 Task<Process::Answer> Process::read_clock(std::int64_t clock) {
   if (clock == shim::kCardClock) {
-    const CardClock::Reading card = co_await card_.read();
+    const CardClock::Reading card = co_await around_.card.read();
     co_return Answer{.value = card.sample.card, .error = card.error};
   }
-  if (clock < 0) co_return Answer{.error = EINVAL};
-  const TrueTime asked = host_.true_now();
+  if (!is_known(clock)) co_return Answer{.error = EINVAL};
+  const TrueTime asked = around_.host.true_now();
   std::int64_t reading = 0;
   if (is_system(clock)) {
-    const HostTime now = co_await host_.clock().now();
+    const HostTime now = co_await around_.host.clock().now();
     reading = epoch_ns(now);
   } else {
-    reading = nanoseconds_of(host_.steady_clock().now());
+    reading = nanoseconds_of(around_.host.steady_clock().now());
   }
-  if (host_.true_now() == asked) co_await host_.sleep_for(kLeastReading);
+  if (around_.host.true_now() == asked) co_await around_.host.sleep_for(kLeastReading);
   co_return Answer{.value = reading};
 }
 
 Task<Process::Answer> Process::set_clock(std::int64_t clock, std::int64_t reading) {
   if (reading < 0 || reading >= kLatestSetting) co_return Answer{.error = EINVAL};
   if (clock == shim::kCardClock) {
-    const int error = co_await card_.set(reading);
+    const int error = co_await around_.card.set(reading);
     co_return Answer{.error = error};
   }
   if (clock != CLOCK_REALTIME) co_return Answer{.error = EINVAL};
-  co_await kernel_.set(from_epoch_ns(reading));
+  co_await around_.kernel.set(from_epoch_ns(reading));
   co_return Answer{};
 }
 
 Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
   const auto wanted = read_head<timex>(request.data);
   if (request.head.a == shim::kCardClock) {
-    const KernelClock::Answer card = co_await card_.adjust(wanted);
+    const KernelClock::Answer card = co_await around_.card.adjust(wanted);
     co_return Answer{.value = card.state, .error = card.error, .data = bytes_of(card.now)};
   }
   if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
-  const KernelClock::Answer given = co_await kernel_.adjust(wanted);
+  const KernelClock::Answer given = co_await around_.kernel.adjust(wanted);
   co_return Answer{.value = given.state, .error = given.error, .data = bytes_of(given.now)};
 }
 
@@ -222,7 +232,7 @@ Task<Process::Answer> Process::read_card(std::int64_t count) {
   if (count < 0 || count > PTP_MAX_SAMPLES) throw BadRequest("asked for too many readings");
   Answer answer;
   for (std::int64_t i = 0; i < count; ++i) {
-    const CardClock::Reading reading = co_await card_.read();
+    const CardClock::Reading reading = co_await around_.card.read();
     if (reading.error != 0) co_return Answer{.error = reading.error};
     const Bytes sample = bytes_of(reading.sample);
     answer.data.insert(answer.data.end(), sample.begin(), sample.end());
@@ -231,19 +241,24 @@ Task<Process::Answer> Process::read_card(std::int64_t count) {
 }
 
 Process::Answer Process::card_stamping(std::int64_t wanted) {
-  if (host_.nic() == nullptr) return {.error = EOPNOTSUPP};
+  if (around_.host.nic() == nullptr) return {.error = EOPNOTSUPP};
   if (wanted >= 0) {
-    network_.set_card_stamping({.arrivals = (wanted & 1) != 0, .departures = (wanted & 2) != 0});
+    around_.network.set_card_stamping(
+        {.arrivals = (wanted & 1) != 0, .departures = (wanted & 2) != 0});
   }
-  const CardStamping now = network_.card_stamping();
+  const CardStamping now = around_.network.card_stamping();
   return {.value = (now.arrivals ? 1 : 0) | (now.departures ? 2 : 0)};
 }
 
 // Timers.
 
 Process::Answer Process::open_timer(int fd, std::int64_t clock) {
-  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
-  timers_.insert_or_assign(fd, ProcessTimer(host_, is_system(clock)));
+  if (open_.size() >= kMostOpen) return {.error = EMFILE};
+  const bool is_of_timers = clock == CLOCK_REALTIME || clock == CLOCK_MONOTONIC ||
+                            clock == CLOCK_BOOTTIME || clock == CLOCK_REALTIME_ALARM ||
+                            clock == CLOCK_BOOTTIME_ALARM;
+  if (!is_of_timers) return {.error = EINVAL};
+  open(fd, ProcessTimer(around_.host, is_system(clock)));
   return {};
 }
 
@@ -258,9 +273,11 @@ shim::TimerSetting setting_in(const Bytes& data) {
 }  // namespace
 
 Process::Answer Process::of_timer(const ChildRequest& request) {
-  const auto found = timers_.find(request.head.fd);
-  if (found == timers_.end()) throw BadRequest("used a timer that it never opened");
-  ProcessTimer& timer = found->second;
+  const std::shared_ptr<OpenObject> object = object_of(request.head.fd);
+  if (object == nullptr || object->timer() == nullptr) {
+    throw BadRequest("used a timer that it never opened");
+  }
+  ProcessTimer& timer = *object->timer();
   if (request.head.call == Call::kReadTimer) {
     const std::int64_t expirations = timer.take();
     return {.value = expirations, .error = expirations == 0 ? EAGAIN : 0};
@@ -283,7 +300,7 @@ Process::Answer Process::of_signal_timer(const ChildRequest& request) {
   const shim::TimerSetting before = exists ? found->second.setting() : shim::TimerSetting{};
   if (request.head.call == Call::kSetSignalTimer) {
     if (!exists && signal_timers_.size() >= kMostSignalTimers) return {.error = EAGAIN};
-    ProcessTimer timer(host_, is_system(request.head.b));
+    ProcessTimer timer(around_.host, is_system(request.head.b));
     timer.set(setting_in(request.data), request.head.a != 0);
     signal_timers_.insert_or_assign(number, timer);
   }
@@ -307,74 +324,6 @@ Process::Answer Process::take_expirations() {
     answer.data.insert(answer.data.end(), bytes.begin(), bytes.end());
   }
   return answer;
-}
-
-// Waits.
-
-std::int16_t Process::readiness(const shim::Interest& interest) {
-  if (const auto found = sockets_.find(interest.fd); found != sockets_.end()) {
-    const UdpSocket& socket = found->second;
-    const int error = socket.departed.empty() ? 0 : POLLERR;
-    const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
-    const int ready = (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent;
-    return static_cast<std::int16_t>((ready & interest.events) | error);
-  }
-  if (const auto found = streams_.find(interest.fd); found != streams_.end()) {
-    constexpr int kAlways = POLLERR | POLLHUP;
-    return static_cast<std::int16_t>(HostStreams::readiness(*found->second) &
-                                     (interest.events | kAlways));
-  }
-  if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
-    return found->second.expirations() > 0 ? interest.events & POLLIN : 0;
-  }
-  return POLLNVAL;
-}
-
-std::optional<TrueTime> Process::next_timer(std::span<const shim::Interest> interests) {
-  std::optional<TrueTime> next;
-  const auto consider = [&next](const ProcessTimer& timer) {
-    const std::optional<TrueTime> look = timer.next_look();
-    if (look && (!next || *look < *next)) next = look;
-  };
-  for (const shim::Interest& interest : interests) {
-    const auto found = timers_.find(interest.fd);
-    if (found != timers_.end() && (interest.events & POLLIN) != 0) consider(found->second);
-  }
-  for (const auto& [number, timer] : signal_timers_) consider(timer);
-  return next;
-}
-
-Task<Process::Answer> Process::wait(ChildRequest request) {
-  std::vector<shim::Interest> interests(request.data.size() / sizeof(shim::Interest));
-  if (!interests.empty()) {
-    std::memcpy(interests.data(), request.data.data(), interests.size() * sizeof interests[0]);
-  }
-  const WakeTime deadline =
-      wake_time(host_, static_cast<shim::Deadline>(request.head.a), request.head.b);
-  const bool watches_real = (request.head.flags & shim::kWatchesReal) != 0;
-  const std::uint64_t activity = network_.local_activity();
-  for (;;) {
-    std::int64_t ready = 0;
-    for (shim::Interest& interest : interests) {
-      interest.ready = readiness(interest);
-      ready += interest.ready != 0;
-    }
-    if (ready > 0 || is_past(host_, deadline) || is_stopped_) {
-      Answer answer{.value = ready};
-      const auto bytes = std::as_bytes(std::span(interests));
-      answer.data.assign(bytes.begin(), bytes.end());
-      co_return answer;
-    }
-    const bool looks_again = watches_real && network_.local_activity() != activity;
-    if (looks_again || has_expirations()) {
-      co_return Answer{.error = looks_again ? EAGAIN : EINTR,
-                       .data = bytes_of(left_ns(host_, deadline))};
-    }
-    std::optional<TrueTime> look = next_look(host_, deadline);
-    const std::optional<TrueTime> timer = next_timer(interests);
-    if (timer && (!look || *timer < *look)) look = timer;
-    co_await woken_.wait(look);
-  }
 }
 
 }  // namespace simbench::sim

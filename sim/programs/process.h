@@ -1,29 +1,30 @@
-// A process as the world has it: its requests (shim/protocol.h), each an await on the host's ports.
+// A process as the world has it: what its descriptors stand for, and its requests about them and
+// about clocks (shim/protocol.h), each an await on the host's ports.
 //
-// serve() runs the program until it ends or the world does. While the program computes, no time
-// passes; what takes time is what the ports say takes time: readings and settings of the clock,
-// sends, wake-ups. Requests are not trusted: one that is no request ends the program, with a note.
+// What takes time is what the ports say takes time: readings and settings of the clock, sends,
+// wake-ups. Requests are not trusted: one that is no request throws BadRequest, which ends the
+// program (sim/programs/program.h).
 //
 // Clocks: CLOCK_REALTIME and its kin are the host's system clock, all monotonic ones its oscillator
 // (which the kernel's rate corrections do not touch, unlike Linux'), CPU clocks likewise; the
 // network card's has no number of its own (shim::kCardClock).
 //
-// Programs of a host may speak over real sockets (Unix-domain): who waits for one looks again
-// whenever another says that it did something there, or has ended.
+// A forked process has its parent's descriptors; the objects are shared and end with the last.
 //
 // A timer that makes a signal ends a wait; one that expires while the program computes is told with
-// the reply to what it asks next. A program that asks more than kMostASecond times within a second
+// the reply to what it asks next. A process that asks more than kMostASecond times within a second
 // of simulated time is ended.
 //
-//   HostNetwork network(host, 6);
-//   KernelClock kernel(host);
-//   CardClock card(host);
-//   Process process(host, network, kernel, card, {.command = {"/usr/sbin/chronyd", "-d"}}, 1);
-//   boost::asio::co_spawn(context, process.serve(), boost::asio::detached);
+//   Process process(surroundings, 100, 1);
+//   ProgramThread thread(host, process, 100, nullptr);
+//   const Process::Answer answer = co_await process.answer(thread, std::move(request));
 #pragma once
+
+#include <sys/types.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,8 +39,10 @@
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
 #include "sim/programs/host_network.h"
+#include "sim/programs/host_processes.h"
 #include "sim/programs/host_streams.h"
 #include "sim/programs/kernel_clock.h"
+#include "sim/programs/open_object.h"
 #include "sim/programs/process_timers.h"
 
 namespace simbench::sim {
@@ -52,43 +55,84 @@ using processes::ChildRequest;
 using processes::kMostOpen;
 using processes::read_head;
 
+struct ProgramThread;
+
+// How a wait ended.
+enum class WaitEnd { kReady, kTimeUp, kSignal, kActivity };
+
 class Process {
  public:
   static constexpr std::uint64_t kMostASecond = 50'000;
 
-  // `number` tells the processes of a host apart. The references must outlive this.
-  Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
-          const Child::Settings& settings, std::uint32_t number);
-  ~Process();
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
+  // Of the host and of the program; they must outlive the process.
+  struct Surroundings {
+    SimHost& host;
+    HostNetwork& network;
+    KernelClock& kernel;
+    CardClock& card;
+    HostProcesses& processes;
+    RandomStream& chance;
+    std::function<void()> wake;  // the program's threads look again
+  };
 
-  // Ends with the program.
-  Task<void> serve();
-  // Ends it at its next wait, or the one that it is in.
-  void stop();
-  // Why it ended by itself, one line; empty while it runs, and once it is stopped.
-  const std::string& ending() const { return ending_; }
-
- private:
   struct Answer {
     std::int64_t value = 0;
     int error = 0;
     Bytes data{};
   };
-  // Throws for a program that asks too often.
+
+  Process(const Surroundings& surroundings, std::int32_t number, std::int32_t parent);
+  // A forked one.
+  Process(const Process& parent, std::int32_t number);
+  ~Process();
+  Process& operator=(const Process&) = delete;
+
+  std::int32_t number() const { return number_; }
+  std::int32_t parent() const { return parent_; }
+  void set_parent(std::int32_t parent) { parent_ = parent; }
+  // What the machine calls it; -1: not known yet. The kernel is asked for a handle, by which it is
+  // signalled and awaited; the number of one that was started elsewhere stays its own.
+  pid_t machine() const { return machine_; }
+  void set_machine(pid_t machine);
+  // By the machine; returns an errno. Its threads look at it in their waits.
+  int signal(int number);
+  void look_at_signals();
+  std::uint64_t signals() const { return signals_; }
+  // After the last thread: waits until the machine knows that it has ended, for a moment.
+  void await_end() const;
+
+  // Throws for a process that asks too often.
   void count_request();
   // These throw for what is no request.
-  Task<Answer> answer(ChildRequest request);
-  shim::Identity identity() const;
+  Task<Answer> answer(ProgramThread& thread, ChildRequest request);
+  shim::Identity identity(const ProgramThread& thread) const;
+  // After exec(): closes all descriptors but these.
+  Task<void> keep_only(const Bytes& numbers);
+  Task<void> close_all();
+  // Whether a signal timer has expired that the program has not heard of.
+  bool has_expirations();
+  // Until it is ready, the deadline has come, there is a signal, or, if asked for, activity.
+  Task<WaitEnd> wait_until(ProgramThread& thread, WakeTime deadline, bool watches_real,
+                           std::function<bool()> is_ready,
+                           std::function<std::optional<TrueTime>()> next_look);
+  Task<Answer> wait_for_wake(ProgramThread& thread, const ChildRequest& request);
+  void stop() { is_stopped_ = true; }
+
+  bool is_replaced = false;  // a thread of it is about to become another program
+  bool has_ended = false;
+
+ private:
   Answer random_bytes(std::int64_t count);
   Task<Answer> read_clock(std::int64_t clock);
   Task<Answer> set_clock(std::int64_t clock, std::int64_t reading);
   Task<Answer> adjust_clock(ChildRequest request);
 
+  // Null if there is none.
+  std::shared_ptr<OpenObject> object_of(int fd) const;
+  std::shared_ptr<OpenObject> open(int fd, OpenObject::What what);
+  Task<Answer> close(int fd);
   UdpSocket& socket_of(int fd);
   Answer open_socket(int fd, std::int64_t type);
-  Answer close(int fd);
   Answer of_socket(const ChildRequest& request);
   Task<Answer> read_card(std::int64_t count);
   Answer card_stamping(std::int64_t wanted);
@@ -104,36 +148,28 @@ class Process {
   Task<Answer> write(StreamSocket& stream, const Bytes& data);
   Task<Answer> read(StreamSocket& stream, std::int64_t how, std::int64_t most);
   static Answer describe(StreamSocket& stream, shim::Call call);
-  Task<void> close_streams();
-  void close_sockets();
-  std::size_t open_descriptors() const {
-    return sockets_.size() + streams_.size() + timers_.size();
-  }
+  std::shared_ptr<OpenObject> add_stream(int fd, std::shared_ptr<StreamSocket> stream);
 
   Answer open_timer(int fd, std::int64_t clock);
   Answer of_timer(const ChildRequest& request);
   Answer of_signal_timer(const ChildRequest& request);
   Answer take_expirations();
-  // Whether a signal timer has expired that the program has not heard of.
-  bool has_expirations();
+  Answer open_set(int fd);
+  Answer control_set(const ChildRequest& request);
+  Answer take_events(const ChildRequest& request);
 
-  Task<Answer> wait(ChildRequest request);
-  std::int16_t readiness(const shim::Interest& interest);
+  Task<Answer> wait(ProgramThread& thread, ChildRequest request);
+  std::int16_t readiness_of(const shim::Interest& interest);
   std::optional<TrueTime> next_timer(std::span<const shim::Interest> interests);
 
-  SimHost& host_;
-  HostNetwork& network_;
-  KernelClock& kernel_;
-  CardClock& card_;
-  std::uint32_t number_;
-  RandomStream chance_;
-  WaitPoint woken_;
-  std::map<int, UdpSocket> sockets_;
-  std::map<int, std::shared_ptr<StreamSocket>> streams_;
-  std::map<int, ProcessTimer> timers_;         // by descriptor
-  std::map<int, ProcessTimer> signal_timers_;  // by the shim's number
-  Child child_;
-  std::string ending_;
+  Surroundings around_;
+  std::int32_t number_;
+  std::int32_t parent_;
+  pid_t machine_ = -1;
+  int handle_ = -1;  // pidfd; -1: none
+  std::uint64_t signals_ = 0;
+  std::map<int, std::shared_ptr<OpenObject>> open_{};  // by the shim's number
+  std::map<int, ProcessTimer> signal_timers_{};        // by the shim's number
   bool is_stopped_ = false;
   TrueTime counted_since_;
   std::uint64_t asked_ = 0;

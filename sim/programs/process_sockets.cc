@@ -1,8 +1,12 @@
 // The requests that concern sockets.
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <cstring>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "sim/programs/process.h"
 
@@ -10,43 +14,81 @@ namespace simbench::sim {
 
 using shim::Call;
 
+std::shared_ptr<OpenObject> Process::object_of(int fd) const {
+  const auto found = open_.find(fd);
+  return found != open_.end() ? found->second : nullptr;
+}
+
+// One that was left open under this number ends.
+std::shared_ptr<OpenObject> Process::open(int fd, OpenObject::What what) {
+  auto object = std::make_shared<OpenObject>(std::move(what));
+  std::swap(open_[fd], object);
+  if (object != nullptr && object.use_count() == 1 && object->socket() != nullptr) {
+    around_.network.close(*object->socket());
+  }
+  return open_[fd];
+}
+
 UdpSocket& Process::socket_of(int fd) {
-  const auto found = sockets_.find(fd);
-  if (found == sockets_.end()) throw BadRequest("used a socket that it never opened");
-  return found->second;
+  const std::shared_ptr<OpenObject> object = object_of(fd);
+  if (object == nullptr || object->socket() == nullptr) {
+    throw BadRequest("used a socket that it never opened");
+  }
+  return *object->socket();
 }
 
 Process::Answer Process::open_socket(int fd, std::int64_t type) {
-  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
+  if (open_.size() >= kMostOpen) return {.error = EMFILE};
   if (type == SOCK_STREAM) return open_stream(fd);
-  UdpSocket& socket = sockets_[fd];
-  network_.close(socket);  // one that was left open under this number
-  socket = {};
-  socket.on_arrival = [this] { woken_.notify(); };
+  const std::shared_ptr<OpenObject> object = open(fd, UdpSocket{});
+  object->socket()->on_arrival = [wake = around_.wake, object = object.get()] {
+    object->changed(POLLIN | POLLERR | POLLPRI);
+    wake();
+  };
   return {};
 }
 
-Process::Answer Process::close(int fd) {
-  if (const auto found = sockets_.find(fd); found != sockets_.end()) {
-    network_.close(found->second);
-    sockets_.erase(found);
+// The object ends with its last descriptor, in whichever process.
+Task<Process::Answer> Process::close(int fd) {
+  const auto found = open_.find(fd);
+  if (found == open_.end()) co_return Answer{};
+  const std::shared_ptr<OpenObject> object = std::move(found->second);
+  open_.erase(found);
+  if (object.use_count() > 1) co_return Answer{};
+  if (UdpSocket* socket = object->socket()) around_.network.close(*socket);
+  if (const std::shared_ptr<StreamSocket> stream = object->stream_pointer()) {
+    co_await around_.network.streams().close(stream);
   }
-  timers_.erase(fd);
-  return {};
+  co_return Answer{};
 }
 
-void Process::close_sockets() {
-  for (auto& [fd, socket] : sockets_) network_.close(socket);
-  sockets_.clear();
+Task<void> Process::close_all() {
+  while (!open_.empty()) co_await close(open_.begin()->first);
+}
+
+Task<void> Process::keep_only(const Bytes& numbers) {
+  std::set<std::int32_t> kept;
+  for (std::size_t i = 0; i + sizeof(std::int32_t) <= numbers.size(); i += sizeof(std::int32_t)) {
+    std::int32_t number = 0;
+    std::memcpy(&number, numbers.data() + i, sizeof number);
+    kept.insert(number);
+  }
+  std::vector<int> closed;
+  for (const auto& [number, object] : open_) {
+    if (!kept.contains(number)) closed.push_back(number);
+  }
+  for (const int each : closed) co_await close(each);
+  // As exec() has it: alarms go on, timers of timer_create() do not.
+  std::erase_if(signal_timers_, [](const auto& timer) { return timer.first != -1; });
 }
 
 Process::Answer Process::of_socket(const ChildRequest& request) {
   UdpSocket& socket = socket_of(request.head.fd);
   switch (request.head.call) {
     case Call::kBind:
-      return {.error = network_.bind(socket, read_head<shim::Address>(request.data))};
+      return {.error = around_.network.bind(socket, read_head<shim::Address>(request.data))};
     case Call::kConnect:
-      return {.error = network_.connect(socket, read_head<shim::Address>(request.data))};
+      return {.error = around_.network.connect(socket, read_head<shim::Address>(request.data))};
     case Call::kName:
       return {.data = bytes_of(socket.local)};
     case Call::kPeerName:
@@ -74,7 +116,7 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
 
 int Process::join(UdpSocket& socket, bool joins, std::int64_t group) {
   const auto address = static_cast<std::uint32_t>(group);
-  return joins ? network_.join(socket, address) : network_.leave(socket, address);
+  return joins ? around_.network.join(socket, address) : around_.network.leave(socket, address);
 }
 
 Process::Answer Process::set_option(UdpSocket& socket, shim::SocketOption option,
@@ -122,7 +164,7 @@ Task<Process::Answer> Process::send(ChildRequest request) {
   Bytes payload(request.data.begin() + sizeof to, request.data.end());
   const std::int64_t asked = request.head.a;
   const unsigned stamps = asked < 0 ? socket.departure_stamps : static_cast<unsigned>(asked);
-  const int error = co_await network_.send(socket, to, std::move(payload), stamps);
+  const int error = co_await around_.network.send(socket, to, std::move(payload), stamps);
   co_return Answer{.error = error};
 }
 

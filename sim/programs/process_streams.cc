@@ -1,4 +1,5 @@
 // The requests that concern connections.
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -12,34 +13,43 @@ namespace simbench::sim {
 using shim::Call;
 
 bool Process::is_of_stream(const ChildRequest& request) const {
-  return request.head.call != Call::kWait && streams_.contains(request.head.fd);
+  if (request.head.call == Call::kWait || request.head.call == Call::kClose) return false;
+  const std::shared_ptr<OpenObject> object = object_of(request.head.fd);
+  return object != nullptr && object->stream() != nullptr;
+}
+
+std::shared_ptr<OpenObject> Process::add_stream(int fd, std::shared_ptr<StreamSocket> stream) {
+  const std::shared_ptr<OpenObject> object = open(fd, stream);
+  stream->on_change = [wake = around_.wake, object = std::weak_ptr(object)] {
+    constexpr int kAny = POLLIN | POLLOUT | POLLERR | POLLHUP | POLLRDHUP;
+    if (const std::shared_ptr<OpenObject> known = object.lock()) known->changed(kAny);
+    wake();
+  };
+  return object;
 }
 
 Process::Answer Process::open_stream(int fd) {
-  streams_[fd] = network_.streams().open([this] { woken_.notify(); });
+  add_stream(fd, around_.network.streams().open([] {}));
   return {};
 }
 
 Process::Answer Process::accept(StreamSocket& listener, std::int64_t fd) {
   if (listener.state != StreamSocket::State::kListening) return {.error = EINVAL};
-  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
+  if (open_.size() >= kMostOpen) return {.error = EMFILE};
   if (fd < 0 || fd > INT32_MAX) throw BadRequest("accepted into a descriptor that is none");
   const auto place = static_cast<int>(fd);
-  if (sockets_.contains(place) || streams_.contains(place) || timers_.contains(place)) {
-    throw BadRequest("accepted into a descriptor that is taken");
-  }
-  std::shared_ptr<StreamSocket> stream =
-      network_.streams().accept(listener, [this] { woken_.notify(); });
+  if (object_of(place) != nullptr) throw BadRequest("accepted into a descriptor that is taken");
+  std::shared_ptr<StreamSocket> stream = around_.network.streams().accept(listener, [] {});
   if (stream == nullptr) return {.error = EAGAIN};
   Answer answer{.data = bytes_of(stream->peer)};
-  streams_[place] = std::move(stream);
+  add_stream(place, std::move(stream));
   return answer;
 }
 
 Task<Process::Answer> Process::write(StreamSocket& stream, const Bytes& data) {
   read_head<shim::Address>(data);  // a stream has its peer
   std::size_t written = 0;
-  const int error = co_await network_.streams().write(
+  const int error = co_await around_.network.streams().write(
       stream, std::span(data).subspan(sizeof(shim::Address)), written);
   co_return Answer{.value = static_cast<std::int64_t>(written), .error = error};
 }
@@ -49,16 +59,17 @@ Task<Process::Answer> Process::read(StreamSocket& stream, std::int64_t how, std:
     throw BadRequest("asked for too many bytes");
   }
   Answer answer;
-  answer.error = co_await network_.streams().read(stream, static_cast<std::size_t>(most),
-                                                  (how & 2) != 0, answer.data);
+  answer.error = co_await around_.network.streams().read(stream, static_cast<std::size_t>(most),
+                                                         (how & 2) != 0, answer.data);
   answer.value = static_cast<std::int64_t>(answer.data.size());
   co_return answer;
 }
 
 Task<Process::Answer> Process::of_stream(ChildRequest request) {
   // Kept while it is closed.
-  const std::shared_ptr<StreamSocket> stream = streams_.at(request.head.fd);
-  HostStreams& network = network_.streams();
+  const std::shared_ptr<OpenObject> object = object_of(request.head.fd);
+  const std::shared_ptr<StreamSocket> stream = object->stream_pointer();
+  HostStreams& network = around_.network.streams();
   Answer answer;
   switch (request.head.call) {
     case Call::kBind:
@@ -79,10 +90,6 @@ Task<Process::Answer> Process::of_stream(ChildRequest request) {
     case Call::kShutDown:
       answer.error = co_await network.shut_down(*stream, static_cast<int>(request.head.a));
       co_return answer;
-    case Call::kClose:
-      streams_.erase(request.head.fd);
-      co_await network.close(stream);
-      co_return answer;
     default:
       co_return describe(*stream, request.head.call);
   }
@@ -101,14 +108,6 @@ Process::Answer Process::describe(StreamSocket& stream, Call call) {
       return {.value = static_cast<std::int64_t>(stream.input.size())};
     default:
       throw BadRequest("asked of a connection what it does not have");
-  }
-}
-
-Task<void> Process::close_streams() {
-  while (!streams_.empty()) {
-    const std::shared_ptr<StreamSocket> stream = std::move(streams_.begin()->second);
-    streams_.erase(streams_.begin());
-    co_await network_.streams().close(stream);
   }
 }
 

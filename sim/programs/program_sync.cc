@@ -11,7 +11,7 @@
 #include "algorithms/host_sync/join.h"
 #include "processes/placeholders.h"
 #include "sim/host/sim_host.h"
-#include "sim/programs/process.h"
+#include "sim/programs/program.h"
 
 namespace simbench::sim {
 namespace {
@@ -35,7 +35,7 @@ class RunningPrograms {
 
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
              const std::string& folder) {
-    const std::size_t number = processes_.size();
+    const std::size_t number = programs_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
     Child::Settings child{
@@ -46,8 +46,8 @@ class RunningPrograms {
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim};
     if (settings.patience) child.patience = *settings.patience;
-    processes_.emplace_back(host_, network_, kernel_, card_, child,
-                            static_cast<std::uint32_t>(number));
+    programs_.emplace_back(Program::Surroundings{host_, network_, kernel_, card_, processes_},
+                           child);
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -61,24 +61,24 @@ class RunningPrograms {
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
-    for (Process& process : processes_) tasks.push_back(serve(process, on_end));
+    for (Program& program : programs_) tasks.push_back(serve(program, on_end));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
   }
 
  private:
-  Task<void> serve(Process& process, std::function<void(const std::string&)> on_end) {
+  Task<void> serve(Program& program, std::function<void(const std::string&)> on_end) {
     const TrueTime begin = host_.true_now();
-    co_await process.serve();
-    if (process.ending().empty() || std::exchange(has_failed_, true)) co_return;
+    co_await program.serve();
+    if (program.ending().empty() || std::exchange(has_failed_, true)) co_return;
     const double after_s = to_seconds(host_.true_now() - begin);
-    on_end(after_s < 1 ? process.ending()
-                       : fmt::format("after {:.0f} s {}", after_s, process.ending()));
+    on_end(after_s < 1 ? program.ending()
+                       : fmt::format("after {:.0f} s {}", after_s, program.ending()));
   }
 
   Task<void> stop_after(Nanoseconds duration) {
     co_await host_.sleep_for(duration);
-    for (Process& process : processes_) process.stop();
+    for (Program& program : programs_) program.stop();
   }
 
   SimHost& host_;
@@ -86,7 +86,8 @@ class RunningPrograms {
   HostNetwork network_;
   KernelClock kernel_;
   CardClock card_;
-  std::deque<Process> processes_;
+  HostProcesses processes_;
+  std::deque<Program> programs_;
   bool has_failed_ = false;
 };
 

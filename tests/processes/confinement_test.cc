@@ -192,7 +192,7 @@ TEST_F(ConfinementTest, WhatCannotBeStartedSaysWhy) {
   EXPECT_EQ(note_of(missing), "missing: " + missing.folder +
                                   " cannot be made a program's only folder: No such file or "
                                   "directory");
-  EXPECT_THROW(Confinement(missing.folder, ""), ConfinementError);
+  EXPECT_THROW(Confinement(missing.folder), ConfinementError);
 }
 
 // As on a kernel that has none.

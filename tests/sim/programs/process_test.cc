@@ -1,6 +1,6 @@
 // What the world makes of requests that no honest program sends: it answers or ends the program
 // with a note, whatever the bytes are.
-#include "sim/programs/process.h"
+#include "sim/programs/program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -75,19 +75,21 @@ class ProcessTest : public testing::Test {
   }
 
  private:
-  static Task<void> serve(Process& process, Heard& heard) {
-    co_await process.serve();
-    heard.note = process.ending();
+  static Task<void> serve(Program& program, Heard& heard) {
+    co_await program.serve();
+    heard.note = program.ending();
   }
   static Task<void> run(SimHost& host, int link, Heard& heard) {
     HostNetwork network(host, 3);
     KernelClock kernel(host);
     CardClock card(host);
-    Process process(host, network, kernel, card, {.command = {"program"}, .link = link}, 0);
+    HostProcesses processes;
+    Program program({host, network, kernel, card, processes},
+                    {.command = {"program"}, .link = link});
     std::vector<Task<void>> tasks;
     tasks.push_back(kernel.run());
     tasks.push_back(network.stamp_departures());
-    tasks.push_back(serve(process, heard));
+    tasks.push_back(serve(program, heard));
     co_await join_all(std::move(tasks));
   }
 

@@ -1,0 +1,61 @@
+// The world's end of the link of one thread of a program (shim/protocol.h).
+//
+// Nothing that comes over it is trusted: is_whole says whether a request is as long as it says. A
+// descriptor is taken with the requests that pass one; of others it is closed.
+//
+//   Link link(descriptor, std::chrono::seconds(30));
+//   while (const std::optional<ChildRequest> request = link.next()) link.reply(0, 0, {});
+//
+// Complexity: a request and its reply are a system call each.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "algorithms/ports/host.h"
+#include "shim/protocol.h"
+
+namespace simbench::processes {
+
+struct ChildRequest {
+  shim::Request head;
+  Bytes data{};
+  bool is_whole = false;  // there is a head, and as much data as it says
+  int passed = -1;        // a descriptor, which is the receiver's to close; -1: none
+  pid_t sender = 0;       // the process, as the kernel says; of the first request, where asked for
+};
+
+class Link {
+ public:
+  // Owns the descriptor; -1: none.
+  explicit Link(int descriptor = -1,
+                std::chrono::milliseconds patience = std::chrono::milliseconds(0));
+  ~Link();
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  // Once, before the other end sends anything: the first request says who sent it.
+  void ask_for_sender();
+  // Nothing: the other end is closed, or has computed for longer than the patience.
+  std::optional<ChildRequest> next();
+  bool was_too_slow() const { return was_too_slow_; }
+  // Waits until there is a request, an end, or the patience is over.
+  void await_request() const;
+  // One that is gone is found by next(). One that takes no replies loses them.
+  void reply(std::int64_t value, int error, std::span<const std::byte> data);
+
+ private:
+  int descriptor_;
+  std::chrono::milliseconds patience_;
+  bool asks_for_sender_ = false;
+  bool was_too_slow_ = false;
+  Bytes buffer_{};
+};
+
+}  // namespace simbench::processes

@@ -1,0 +1,48 @@
+// A thread of a simulated program: its link, and what it waits for.
+//
+//   ProgramThread thread(host, process, number, nullptr);
+//   co_await thread.woken.wait(std::nullopt);
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "processes/link.h"
+#include "shim/protocol.h"
+#include "sim/engine/virtual_executor.h"
+#include "sim/host/sim_host.h"
+
+namespace simbench::sim {
+
+class Process;
+
+struct ProgramThread {
+  // A wait for a place in memory.
+  struct LockWait {
+    shim::Lock lock{};
+    std::uint64_t order = 0;  // of those that wait for it, the lowest is woken first
+    bool is_woken = false;
+  };
+
+  ProgramThread(SimHost& host, Process& of, std::int32_t thread_number,
+                std::unique_ptr<processes::Link> own_link)
+      : process(&of),
+        number(thread_number),
+        link(std::move(own_link)),
+        woken(host.world().context, host.name(fmt::format("program {} waits", thread_number))) {}
+
+  Process* process;
+  std::int32_t number;
+  std::unique_ptr<processes::Link> link;  // null: of the program's first thread
+  WaitPoint woken;
+  std::uint64_t signals_seen = 0;
+  std::optional<LockWait> lock_wait{};
+  bool watches_real = false;  // in its present wait
+  bool has_left = false;      // it said so
+};
+
+}  // namespace simbench::sim
