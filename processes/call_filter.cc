@@ -8,7 +8,6 @@
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
-#include <time.h>
 
 #include <bit>
 #include <cerrno>
@@ -152,8 +151,6 @@ bool is_of_machine(int number) {
 // The calls that the table calls partly refused, and those that it does not have.
 Code by_arguments(int number) {
   switch (number) {
-    case SYS_clock_gettime:
-      return one_of(0, {CLOCK_PROCESS_CPUTIME_ID, CLOCK_THREAD_CPUTIME_ID}, kAllow, kTrap);
     case SYS_socket:
     case SYS_socketpair:
       return only_for(0, AF_UNIX);
@@ -163,9 +160,8 @@ Code by_arguments(int number) {
 #endif
     case SYS_ppoll:
     case SYS_rt_sigtimedwait:
-      return only_for(4, shim::kOfTheShim);
     case SYS_epoll_create1:
-      return only_for(5, shim::kOfTheShim);
+      return only_for(4, shim::kOfTheShim);
     case SYS_epoll_pwait:
       return only_for(3, 0);  // which does not wait
     case SYS_clone:

@@ -102,7 +102,7 @@ class Unwaiting {
 // Until there may be room. What says that there is and then has none has another reason, which
 // others of the host may take away.
 bool waits_to_write(int fd, bool has_failed) {
-  return has_failed ? wait_for_activity() : wait_for_ready(fd, POLLOUT, -1);
+  return has_failed ? wait_for_activity(true) : wait_for_ready(fd, POLLOUT, -1);
 }
 
 // Tries until it need not wait. `Call` is a call that does not wait itself.

@@ -131,12 +131,12 @@ SIMBENCH_CALL pid_t wait4(pid_t number, int* status, int options, struct rusage*
   const pid_t machine = awaited(number);
   if (machine == 0 && number != 0) return -1;
   int ended_how = 0;
-  for (;;) {
+  for (bool has_looked = false;; has_looked = true) {
     const long ended = machine_call(SYS_wait4, machine, &ended_how, options | WNOHANG, nullptr);
     if (ended < 0) return -1;
     if (ended == 0 && (options & WNOHANG) != 0) return 0;
     if (ended == 0) {
-      if (!wait_for_activity()) return -1;
+      if (!wait_for_activity(has_looked)) return -1;
       continue;
     }
     if (status != nullptr) *status = ended_how;
@@ -160,7 +160,7 @@ SIMBENCH_CALL int waitid(idtype_t kind, id_t number, siginfo_t* info, int option
   pid_t machine = static_cast<pid_t>(number);
   if (kind == P_PID && (machine = awaited(static_cast<pid_t>(number))) == 0) return -1;
   if (kind == P_PGID && number != 0) machine = -awaited(-static_cast<pid_t>(number));
-  for (;;) {
+  for (bool has_looked = false;; has_looked = true) {
     siginfo_t found{};
     const long result = machine_call(SYS_waitid, kind, machine, &found, options | WNOHANG, nullptr);
     if (result < 0) return -1;
@@ -174,7 +174,7 @@ SIMBENCH_CALL int waitid(idtype_t kind, id_t number, siginfo_t* info, int option
     }
     if (info != nullptr) *info = found;
     if (found.si_pid != 0 || (options & WNOHANG) != 0) return 0;
-    if (!wait_for_activity()) return -1;
+    if (!wait_for_activity(has_looked)) return -1;
   }
 }
 

@@ -130,7 +130,10 @@ inline constexpr std::int32_t kIsWatched = 1 << 28;
 
 // A wait that watches real descriptors too ends with EAGAIN when another program of the host may
 // have made one ready. Its data is then what is left until the deadline (int64), as with EINTR.
-enum WaitFlag : std::uint32_t { kWatchesReal = 1 };
+enum WaitFlag : std::uint32_t {
+  kWatchesReal = 1,
+  kHasOnlyLooked = 2,  // since it was told to look: it has done nothing that others wait for
+};
 
 struct Reply {
   std::int64_t value;

@@ -51,7 +51,7 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kNotIntercepted, adjtimex),
     SIMBENCH_REFUSED(kNotIntercepted, clock_adjtime),
     SIMBENCH_REFUSED(kNotIntercepted, gettimeofday),
-    SIMBENCH_REFUSED(kPartly, clock_gettime),
+    SIMBENCH_REFUSED(kNotIntercepted, clock_gettime),
     // Chance.
     SIMBENCH_REFUSED(kNotIntercepted, getrandom),
     // Networks.

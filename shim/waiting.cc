@@ -39,7 +39,7 @@ int look_at_real(pollfd* interests, nfds_t count) {
 // Asks until something is ready or the time has come. Fails with EINTR once a handler has run, and
 // with EAGAIN when real descriptors should be looked at; what is left goes to `until` and
 // `left_ns`. Signals without a handler do not end a wait.
-std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Received answer,
+std::int64_t ask_to_wait(Until& until, std::uint32_t flags, Sent interests, Received answer,
                          std::int64_t* left_ns) {
   for (;;) {
     const std::uint64_t before = handled_signals().all;
@@ -47,7 +47,7 @@ std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Receiv
     const std::int64_t ready = ask({.call = Call::kWait,
                                     .a = static_cast<std::int64_t>(until.kind),
                                     .b = until.ns,
-                                    .flags = watches_real ? kWatchesReal : 0U},
+                                    .flags = flags},
                                    interests, {}, &reply);
     if (ready >= 0 || (errno != EINTR && errno != EAGAIN)) return ready;
     int reason = handled_signals().all != before ? EINTR : errno;
@@ -56,7 +56,7 @@ std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Receiv
     if (left_ns != nullptr) *left_ns = left;
     if (until.kind == Deadline::kAfter) until.ns = left;
     if (reason == EINTR && handled_signals().all == before) {
-      if (!watches_real) continue;
+      if ((flags & kWatchesReal) == 0) continue;
       reason = EAGAIN;  // the signal may be what signalfd() waits for
     }
     return refuse(reason);
@@ -114,12 +114,11 @@ int wait(pollfd* interests, nfds_t count, Until& until, std::int64_t* left_ns) {
                   .simulated = static_cast<Interest*>(__builtin_alloca(places * sizeof(Interest)))};
   auto* answered = static_cast<Interest*>(__builtin_alloca(places * sizeof(Interest)));
   divide(interests, count, watched);
-  std::int64_t is_ready = -1;
-  while (is_ready < 0) {
+  std::uint32_t flags = watched.watches_real ? kWatchesReal : 0U;
+  for (std::int64_t is_ready = -1; is_ready < 0; flags |= kHasOnlyLooked) {
     if (watched.watches_real && look_at_real(watched.real, count) > 0)
       until = {Deadline::kAfter, 0};
-    is_ready = ask_to_wait(until, watched.watches_real,
-                           {watched.simulated, watched.asked * sizeof(Interest)},
+    is_ready = ask_to_wait(until, flags, {watched.simulated, watched.asked * sizeof(Interest)},
                            {.data = answered, .capacity = places * sizeof(Interest)}, left_ns);
     if (is_ready < 0 && errno != EAGAIN) {
       pthread_testcancel();
@@ -311,19 +310,15 @@ bool wait_for_input(int fd, std::int64_t timeout_ns) {
   return wait_for_ready(fd, POLLIN, timeout_ns);
 }
 
-bool wait_for_activity() {
+bool wait_for_activity(bool has_only_looked) {
   pthread_testcancel();
-  for (;;) {
-    const HandledSignals before = handled_signals();
-    ask({.call = Call::kWait,
-         .a = static_cast<std::int64_t>(Deadline::kNever),
-         .flags = kWatchesReal});
-    if (handled_signals().interrupting != before.interrupting) {
-      errno = EINTR;
-      return false;
-    }
-    return true;
-  }
+  const HandledSignals before = handled_signals();
+  ask({.call = Call::kWait,
+       .a = static_cast<std::int64_t>(Deadline::kNever),
+       .flags = kWatchesReal | (has_only_looked ? kHasOnlyLooked : 0U)});
+  if (handled_signals().interrupting == before.interrupting) return true;
+  errno = EINTR;
+  return false;
 }
 
 }  // namespace simbench::shim

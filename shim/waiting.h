@@ -2,7 +2,7 @@
 //
 //   pollfd interest{.fd = 7, .events = POLLIN, .revents = 0};
 //   if (wait_for_ready(7, POLLIN, -1)) print("data");
-//   while (!has_child_ended()) if (!wait_for_activity()) return -1;
+//   if (!has_child_ended() && !wait_for_activity(false)) return -1;
 #pragma once
 
 #include <poll.h>
@@ -47,7 +47,7 @@ int wait(pollfd* interests, nfds_t count, Until& until, std::int64_t* left_ns = 
 // and there is no timeout (signal(7)).
 bool wait_for_ready(int fd, short events, std::int64_t timeout_ns);
 // Waits until another thread of the host has done something to what is real: descriptors, files,
-// processes. False with EINTR, as above.
-bool wait_for_activity();
+// processes. False with EINTR, as above. `has_only_looked`: since it did so before.
+bool wait_for_activity(bool has_only_looked);
 
 }  // namespace simbench::shim

@@ -121,7 +121,8 @@ Task<void> Program::run(ProgramThread& thread) {
         break;
       }
       thread.process->count_request();
-      if (threads_.size() > 1 && around_.processes.has_watchers()) {
+      const bool has_acted = (request->head.flags & shim::kHasOnlyLooked) == 0;
+      if (has_acted && threads_.size() > 1 && around_.processes.has_watchers()) {
         around_.processes.report_activity();
       }
       given = co_await answer(thread, std::move(*request));
