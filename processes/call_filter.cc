@@ -164,6 +164,8 @@ Code by_arguments(int number) {
       return only_for(4, shim::kOfTheShim);
     case SYS_epoll_pwait:
       return only_for(3, 0);  // which does not wait
+    case SYS_utimensat:
+      return one_of(4, {shim::kOfTheShim}, kAllow, failing(0));
     case SYS_clone:
       return clone();
     default:

@@ -1,6 +1,8 @@
 #include "processes/placeholders.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <cstddef>
@@ -36,7 +38,7 @@ std::string fill(std::string text, const HostPlaces& places) {
       {"{address}", dotted(address_of(places.host))},
       {"{host}", std::to_string(places.host)},
       {"{interface}", places.interface},
-      {"{files}", "."},
+      {"{files}", places.files},
       {kNtpDrift, fmt::format("{:.6f}", correction_ppm)},
       {kChronyDrift, fmt::format("{:.6f} {:.6f}", -correction_ppm, error_ppm)}};
   for (const auto& [place, value] : values) boost::replace_all(text, place, value);
@@ -59,7 +61,12 @@ std::string make_folder(const std::filesystem::path& folder,
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   for (const auto& [name, content] : programs.files) {
-    if (!lacks_drift(content, places)) std::ofstream(folder / name) << fill(content, places);
+    if (lacks_drift(content, places)) continue;
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << fill(content, places);
+    const timespec begin{.tv_sec = shim::kWorldBegin / 1'000'000'000, .tv_nsec = 0};
+    const timespec both[] = {begin, begin};
+    utimensat(AT_FDCWD, (folder / name).c_str(), both, 0);
   }
   return folder.string();
 }

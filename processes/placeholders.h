@@ -4,7 +4,8 @@
 //   {address}       the host's own
 //   {host}          its number, 0 for the master
 //   {interface}     its network interface
-//   {files}         the host's folder, which is the programs' working folder
+//   {files}         the host's folder, in which programs begin: /files in the simulated world, the
+//                   machine's path on real hosts
 //   {ntp_drift}     what ntpd's drift file says: the correction in use when it was written, in ppm
 //   {chrony_drift}  what chronyd's says: how fast the clock was, and the error of that, in ppm
 //
@@ -26,6 +27,7 @@
 
 #include "algorithms/ports/host.h"
 #include "scenarios/scenario.h"
+#include "shim/protocol.h"
 
 namespace simbench::processes {
 
@@ -42,13 +44,15 @@ struct HostPlaces {
   PeerId follows = 0;
   std::optional<StoredFrequency> drift{};
   const char* interface = "eth0";
+  std::string files = shim::kFolder;  // what the host's folder is to its programs
 };
 
 std::string fill(std::string text, const HostPlaces& places);
 std::vector<std::string> fill(std::vector<std::string> command, const HostPlaces& places);
 std::map<std::string, std::string> fill(std::map<std::string, std::string> environment,
                                         const HostPlaces& places);
-// The host's folder, made anew (an earlier run's drift file would be this one's), with the files.
+// The host's folder, made anew (an earlier run's drift file would be this one's), with the files,
+// which are from the time at which worlds begin.
 std::string make_folder(const std::filesystem::path& folder,
                         const scenarios::HostPrograms& programs, const HostPlaces& places);
 

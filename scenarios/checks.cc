@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -352,14 +353,23 @@ void check_values(const Scenario& scenario, const nlohmann::json& document) {
       });
 }
 
-// A plain name in a host's folder, and a variable that leaves the loader alone.
+// A name in a host's folder, or below it; none that leads out or is hidden.
+bool is_file_name(const std::string& name) {
+  if (name.empty() || name.front() == '/' || name.back() == '/') return false;
+  for (const auto& part : std::filesystem::path(name)) {
+    if (part.string().starts_with(".")) return false;
+  }
+  return name.find("//") == std::string::npos;
+}
+
+// Files of the host's folder, and variables that leave the loader alone.
 void check_programs(const Scenario& scenario, const std::string& pointer,
                     const HostPrograms& programs) {
   for (const auto& [name, content] : programs.files) {
-    if (name.empty() || name.starts_with(".") || name.find('/') != std::string::npos) {
+    if (!is_file_name(name)) {
       fail_at(scenario, child_pointer(pointer + "/files", name),
-              fmt::format("found \"{}\", allowed: a file name without \"/\" that does not begin "
-                          "with a dot",
+              fmt::format("found \"{}\", allowed: a path within the host's folder, such as "
+                          "\"ntp.conf\" or \"etc/ntp.conf\", no part of which begins with a dot",
                           shown_text(name)));
     }
   }

@@ -19,6 +19,8 @@ void handle_in_shim(int signal, void (*handler)(int, siginfo_t*, void*));
 void serve_refused_calls();
 // The machine's clocks, and the chance that the kernel gave, are out of the program's sight.
 void hide_machine(char** environment);
+// Looks when the machine's files were new.
+void begin_files();
 // Has end_thread() called at the end of this thread.
 void watch_thread();
 // What a program that this one has become, or was started by, had of the world: `text` is

@@ -36,7 +36,7 @@ class Environment {
 };
 
 // As execve(); gives up for a program that the preloaded library cannot reach.
-int execute(const char* path, char* const* words, char* const* environment);
+int execute(const char* given, char* const* words, char* const* environment);
 // Gives up if the preloaded library cannot reach it; a file that is not there is for the caller.
 void check_reach(const char* path);
 // Where a name without a slash is found by PATH; the name itself if it is nowhere.

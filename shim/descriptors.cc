@@ -13,6 +13,7 @@
 
 #include "shim/begin.h"
 #include "shim/children.h"
+#include "shim/files.h"
 #include "shim/link.h"
 #include "shim/local.h"
 #include "shim/refused_calls.h"
@@ -156,6 +157,7 @@ bool is_blocking(int fd) { return (machine_call(SYS_fcntl, fd, F_GETFL) & O_NONB
 SIMBENCH_CALL int close(int fd) {
   if (is_link(fd)) return 0;  // daemons close all that they do not know
   const bool was_local = is_local(fd);
+  stamp_file(fd);
   forget(fd);
   const int result = static_cast<int>(machine_call(SYS_close, fd));
   if (was_local) local_closed();
@@ -180,7 +182,10 @@ SIMBENCH_CALL void closefrom(int first) noexcept {
 }
 
 SIMBENCH_CALL int fclose(FILE* file) {
-  forget(fileno(file));
+  const int fd = fileno(file);
+  if (is_simulated() && fd >= 0) fflush(file);
+  stamp_file(fd);
+  forget(fd);
   return SIMBENCH_REAL(fclose)(file);
 }
 

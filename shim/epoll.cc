@@ -91,8 +91,13 @@ SIMBENCH_CALL int epoll_create(int size) {
 SIMBENCH_CALL int epoll_ctl(int epoll, int operation, int fd, epoll_event* event) {
   if (!is_simulated()) return SIMBENCH_REAL(epoll_ctl)(epoll, operation, fd, event);
   if (!is_open_descriptor(epoll) || !is_open_descriptor(fd)) return refuse(EBADF);
-  if (!is_set(epoll) || epoll == fd) return refuse(EINVAL);
   const Kind kind = kind_of(fd);
+  if (!is_set(epoll) || epoll == fd) {
+    // What cannot be waited for has an error of its own, which comes first.
+    return is_of_the_world(kind)
+               ? refuse(EINVAL)
+               : static_cast<int>(machine_call(SYS_epoll_ctl, epoll, operation, fd, event));
+  }
   if (!is_of_the_world(kind) || kind == Kind::kEpoll) {
     if (machine_call(SYS_epoll_ctl, epoll, operation, fd, event) < 0) return -1;
     if (kind != Kind::kEpoll) return 0;

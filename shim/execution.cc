@@ -20,6 +20,7 @@
 #include "shim/children.h"
 #include "shim/hidden.h"
 #include "shim/link.h"
+#include "shim/paths.h"
 
 namespace simbench::shim {
 namespace {
@@ -42,7 +43,7 @@ std::size_t count_words(char* const* words) {
 // What is not the program's own business.
 bool is_of_shim(const char* entry) {
   return names(entry, kPreload) || names(entry, kLinkVariable) ||
-         names(entry, kDescriptorsVariable);
+         names(entry, kDescriptorsVariable) || names(entry, kFolderVariable);
 }
 
 [[noreturn]] void give_up_on(const char* path, const char* why) {
@@ -141,12 +142,14 @@ Environment::Environment(char* const* wanted, int link, bool has_descriptors) {
   for (std::size_t i = 0; i < count; ++i) {
     if (names(wanted[i], kPreload)) preloaded = wanted[i] + sizeof kPreload;
   }
-  const std::size_t text = strlen(library) + strlen(preloaded) + sizeof descriptors + 256;
-  size_ = (count + 5) * sizeof(char*) + text;
+  const std::size_t text =
+      strlen(library) + strlen(preloaded) + strlen(own_folder()) + sizeof descriptors + 256;
+  constexpr std::size_t kOwn = 5;  // and the end
+  size_ = (count + kOwn) * sizeof(char*) + text;
   void* memory = mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) return;
   words_ = static_cast<char**>(memory);
-  char* place = static_cast<char*>(memory) + (count + 5) * sizeof(char*);
+  char* place = static_cast<char*>(memory) + (count + kOwn) * sizeof(char*);
   char** next = words_;
   const auto add = [&](const char* format, auto... values) {
     *next++ = place;
@@ -161,13 +164,16 @@ Environment::Environment(char* const* wanted, int link, bool has_descriptors) {
   add("LD_PRELOAD=%s%s%s", library, has_others ? ":" : "", has_others ? preloaded : "");
   add("%s=%d", kLinkVariable, link);
   add("%s=%s", kDescriptorsVariable, descriptors);
+  add("%s=%s", kFolderVariable, own_folder());
 }
 
 Environment::~Environment() {
   if (words_ != nullptr) munmap(words_, size_);
 }
 
-int execute(const char* path, char* const* words, char* const* environment) {
+int execute(const char* given, char* const* words, char* const* environment) {
+  const OwnPath own_path(given);
+  const char* path = own_path.text();
   if (!is_simulated()) return static_cast<int>(machine_call(SYS_execve, path, words, environment));
   if (machine_call(SYS_faccessat, AT_FDCWD, path, X_OK) < 0) return -1;
   check_reach(path);

@@ -14,6 +14,7 @@
 
 #include "shim/begin.h"
 #include "shim/own_clock.h"
+#include "shim/paths.h"
 
 namespace simbench::shim {
 namespace {
@@ -192,6 +193,7 @@ __attribute__((constructor)) void join_world(int /*count*/, char** /*words*/, ch
   machine_call(SYS_fcntl, first_link, F_SETFD, FD_CLOEXEC);
   mark_process();
   serve_refused_calls();
+  take_folder(value_of(kFolderVariable, environment));
   const char* kept = value_of(kDescriptorsVariable, environment);
   std::int32_t numbers[kMostDescriptors];
   std::size_t count = 0;
@@ -203,6 +205,7 @@ __attribute__((constructor)) void join_world(int /*count*/, char** /*words*/, ch
     open_own_clock();
   } else {
     hide_machine(environment);
+    begin_files();
     watch_thread();
   }
 }

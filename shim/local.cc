@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 #include <cstddef>
-#include <initializer_list>
 
+#include "shim/paths.h"
 #include "shim/waiting.h"
 
 namespace simbench::shim {
@@ -33,22 +33,10 @@ Result told(Result result) {
   return result;
 }
 
-// The path's rest below a folder of run-time files; the path itself if it is elsewhere.
-const char* own_path(const char* path) {
-  if (!is_simulated() || path == nullptr) return path;
-  for (const char* folder : {"/var/run/", "/run/"}) {
-    const std::size_t size = strlen(folder);
-    if (strncmp(path, folder, size) == 0 && strchr(path + size, '/') == nullptr) {
-      return path + size;
-    }
-  }
-  return path;
-}
-
 // A Unix-domain address whose path is the program's own.
 class OwnName {
  public:
-  OwnName(const sockaddr* name, socklen_t size) : name_(name), size_(size) {
+  OwnName(const sockaddr* name, socklen_t size, Use use) : name_(name), size_(size) {
     constexpr socklen_t kBegin = offsetof(sockaddr_un, sun_path);
     if (name == nullptr || name->sa_family != AF_UNIX || size <= kBegin) return;
     if (size > sizeof own_) return;
@@ -56,12 +44,19 @@ class OwnName {
     if (own_.sun_path[0] == '\0') return;
     char path[sizeof own_.sun_path + 1] = {};
     memcpy(path, own_.sun_path, size - kBegin);
-    const char* kept = own_path(path);
-    if (kept == path) return;
+    const OwnPath kept(path, use);
+    const char* text = kept.text();
+    if (text == path) return;
+    // Names of sockets are short: from the folder itself it is shorter.
+    char here[PATH_MAX];
+    const bool is_here =
+        machine_call(SYS_getcwd, here, sizeof here) > 0 && strcmp(here, own_folder()) == 0;
+    if (is_here && strlen(text) > strlen(here) + 1) text += strlen(here) + 1;
+    if (strlen(text) >= sizeof own_.sun_path) return;
     memset(own_.sun_path, 0, sizeof own_.sun_path);
-    memcpy(own_.sun_path, kept, strlen(kept));
+    memcpy(own_.sun_path, text, strlen(text));
     name_ = reinterpret_cast<const sockaddr*>(&own_);
-    size_ = static_cast<socklen_t>(kBegin + strlen(kept) + 1);
+    size_ = static_cast<socklen_t>(kBegin + strlen(text) + 1);
   }
   const sockaddr* name() const { return name_; }
   socklen_t size() const { return size_; }
@@ -126,17 +121,18 @@ int local_socket(int domain, int type, int protocol) {
 }
 
 int local_bind(int fd, const sockaddr* name, socklen_t size) {
-  const OwnName own(name, size);
+  const OwnName own(name, size, Use::kCreates);
   return static_cast<int>(machine_call(SYS_bind, fd, own.name(), own.size()));
 }
 
 int local_connect(int fd, const sockaddr* name, socklen_t size) {
-  const OwnName own(name, size);
+  const OwnName own(name, size, Use::kReads);
   return told(static_cast<int>(machine_call(SYS_connect, fd, own.name(), own.size())));
 }
 
 ssize_t local_sendmsg(int fd, const msghdr* message, int flags) {
-  const OwnName own(static_cast<const sockaddr*>(message->msg_name), message->msg_namelen);
+  const OwnName own(static_cast<const sockaddr*>(message->msg_name), message->msg_namelen,
+                    Use::kReads);
   msghdr sent = *message;
   sent.msg_name = const_cast<sockaddr*>(own.name());
   sent.msg_namelen = own.size();
@@ -230,14 +226,6 @@ SIMBENCH_CALL int inotify_init() noexcept { return inotify_init1(0); }
 SIMBENCH_CALL int signalfd(int fd, const sigset_t* mask, int flags) noexcept {
   const long result = machine_call(SYS_signalfd4, fd, mask, 8, flags);
   return fd < 0 ? keep_local(result) : static_cast<int>(result);
-}
-
-SIMBENCH_CALL int unlink(const char* path) {
-  return static_cast<int>(machine_call(SYS_unlink, own_path(path)));
-}
-
-SIMBENCH_CALL int chmod(const char* path, mode_t mode) {
-  return static_cast<int>(machine_call(SYS_chmod, own_path(path), mode));
 }
 
 }  // namespace simbench::shim

@@ -1,9 +1,9 @@
 // What the threads and processes of a host have between them, and the kernel keeps: Unix-domain
 // sockets, pipes, eventfd(), signalfd(), inotify.
 //
-// Paths below /var/run and /run are those of the program's working folder instead, so that hosts do
-// not meet there. A thread that waits for such a descriptor waits in simulated time: whoever reads,
-// writes, connects or closes one tells the world, which lets the others of its host look again.
+// Paths are those of the host's folder (shim/paths.h), so that hosts do not meet. A thread that
+// waits for such a descriptor waits in simulated time: whoever reads, writes, connects or closes
+// one tells the world, which lets the others of its host look again.
 //
 //   const int fd = local_socket(AF_UNIX, SOCK_DGRAM, 0);
 //   const sockaddr_un name{.sun_family = AF_UNIX, .sun_path = "./ptp4l"};

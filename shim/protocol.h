@@ -31,6 +31,11 @@ namespace simbench::shim {
 inline constexpr char kLinkVariable[] = "SIMBENCH_LINK";
 // What a program that was started by another has of its descriptors: "fd:kind:number ...".
 inline constexpr char kDescriptorsVariable[] = "SIMBENCH_DESCRIPTORS";
+inline constexpr char kFolderVariable[] = "SIMBENCH_FOLDER";
+// The time of day at which worlds begin: the beginning of 2026, ns.
+inline constexpr std::int64_t kWorldBegin = 1'767'225'600'000'000'000;
+// What a program sees its host's folder as (shim/paths.h).
+inline constexpr char kFolder[] = "/files";
 inline constexpr std::size_t kMostData = 65536;
 // The descriptor of the clock's page, where only the clock is the world's.
 inline constexpr int kClockPage = 201;
@@ -38,7 +43,7 @@ inline constexpr int kClockPage = 201;
 enum class Call : std::uint32_t {
   kHello,        // a: 1: after exec(), data: int32[], the descriptors that are left -> Identity
   kNote,         // data: a text about what cannot be simulated; the program ends
-  kReadClock,    // a: clockid -> value
+  kReadClock,    // a: clockid, b: 1: no time passes -> value
   kSetClock,     // a: clockid, b: its new reading
   kAdjustClock,  // a: clockid, data: struct timex -> value: clock state, data: struct timex
   kWait,         // a: Deadline, b: its time, data: Interest[] -> value: how many are ready, data;

@@ -145,7 +145,7 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kIgnored, fchmodat),
     SIMBENCH_REFUSED(kIgnored, fchown),
     SIMBENCH_REFUSED(kIgnored, fchownat),
-    SIMBENCH_REFUSED(kIgnored, utimensat),
+    SIMBENCH_REFUSED(kPartly, utimensat),
     SIMBENCH_REFUSED(kDenied, setxattr),
     SIMBENCH_REFUSED(kDenied, lsetxattr),
     SIMBENCH_REFUSED(kDenied, fsetxattr),

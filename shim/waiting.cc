@@ -232,6 +232,8 @@ int ppoll_checked(pollfd* interests, nfds_t count, const timespec* timeout, cons
 
 namespace {
 
+constexpr int kBitsOfWord = 64;
+
 bool has(fd_set* set, int fd) { return set != nullptr && FD_ISSET(fd, set); }
 
 // Leaves in the set, where it was asked for, only what is so; returns how many that are.
@@ -261,6 +263,12 @@ SIMBENCH_CALL int pselect(int count, fd_set* readers, fd_set* writers, fd_set* e
     interests[asked++] = {.fd = fd, .events = static_cast<short>(events), .revents = 0};
   }
   if (wait_masked(interests, asked, after(timeout), mask) < 0) return -1;
+  // Linux writes whole words of the sets.
+  for (int fd = asked_for; fd % kBitsOfWord != 0 && fd < kMostInterests; ++fd) {
+    for (fd_set* set : {readers, writers, exceptions}) {
+      if (set != nullptr) FD_CLR(fd, set);
+    }
+  }
   int ready = 0;
   for (nfds_t i = 0; i < asked; ++i) {
     ready += answer(interests[i], POLLIN, POLLIN | POLLHUP | POLLERR, readers);

@@ -110,14 +110,16 @@ std::string NodePrograms::make_folder(PeerId host) const {
                                      ? std::filesystem::path(temporary_.path())
                                      : std::filesystem::absolute(settings_.log_folder);
   folder /= fmt::format("host{}", host);
-  return processes::make_folder(folder, settings_.programs,
-                                {.host = host, .interface = settings_.interface.c_str()});
+  return processes::make_folder(
+      folder, settings_.programs,
+      {.host = host, .interface = settings_.interface.c_str(), .files = folder.string()});
 }
 
 Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> commands) {
   RunningNodePrograms programs(co_await asio::this_coro::executor, host);
   const std::string folder = make_folder(host.id());
-  const processes::HostPlaces places{.host = host.id(), .interface = settings_.interface.c_str()};
+  const processes::HostPlaces places{
+      .host = host.id(), .interface = settings_.interface.c_str(), .files = folder};
   for (const HostPrograms::Command& command : commands) {
     const auto path = settings_.paths.find(command.front());
     Child::Settings child{.command = processes::fill(command, places),

@@ -17,6 +17,7 @@
 
 #include "algorithms/ports/host.h"
 #include "clocks/kernel_discipline.h"
+#include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 
@@ -24,7 +25,7 @@ namespace simbench::sim {
 
 // The system clocks of the simulated world begin at 0; those of its programs at this time, the
 // beginning of 2026, since some refuse earlier ones.
-inline constexpr std::int64_t kEpochNs = 1'767'225'600 * kSecondNs;
+inline constexpr std::int64_t kEpochNs = shim::kWorldBegin;
 
 constexpr std::int64_t epoch_ns(HostTime time) { return nanoseconds_of(time) + kEpochNs; }
 constexpr HostTime from_epoch_ns(std::int64_t ns) { return HostTime(Nanoseconds(ns - kEpochNs)); }

@@ -97,7 +97,7 @@ Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest reques
   if (is_of_stream(request)) co_return co_await of_stream(std::move(request));
   switch (request.head.call) {
     case Call::kReadClock:
-      co_return co_await read_clock(request.head.a);
+      co_return co_await read_clock(request.head.a, request.head.b != 0);
     case Call::kSetClock:
       co_return co_await set_clock(request.head.a, request.head.b);
     case Call::kAdjustClock:
@@ -186,13 +186,16 @@ Process::Answer Process::random_bytes(std::int64_t count) {
   return answer;
 }
 
-Task<Process::Answer> Process::read_clock(std::int64_t clock) {
+Task<Process::Answer> Process::read_clock(std::int64_t clock, bool is_free) {
   if (clock == shim::kCardClock) {
     const CardClock::Reading card = co_await around_.card.read();
     co_return Answer{.value = card.sample.card, .error = card.error};
   }
   if (!is_known(clock)) co_return Answer{.error = EINVAL};
   const TrueTime asked = around_.host.true_now();
+  if (is_free) {
+    co_return Answer{.value = epoch_ns(around_.host.system_clock().read(asked))};
+  }
   std::int64_t reading = 0;
   if (is_system(clock)) {
     const HostTime now = co_await around_.host.clock().now();

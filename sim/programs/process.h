@@ -123,7 +123,7 @@ class Process {
 
  private:
   Answer random_bytes(std::int64_t count);
-  Task<Answer> read_clock(std::int64_t clock);
+  Task<Answer> read_clock(std::int64_t clock, bool is_free);
   Task<Answer> set_clock(std::int64_t clock, std::int64_t reading);
   Task<Answer> adjust_clock(ChildRequest request);
 

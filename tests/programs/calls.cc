@@ -1,7 +1,7 @@
 // What man pages promise of the calls that the shim takes, looked at by a program in the simulated
 // world: prints a line for each promise that does not hold, and "done".
 //
-//   calls echo | calls check ADDRESS | calls fork|thread|spin|garbage|exit
+//   calls echo | calls check ADDRESS | calls spin|garbage|exit
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -9,7 +9,6 @@
 #include <linux/net_tstamp.h>
 #include <netinet/in.h>
 #include <poll.h>
-#include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/random.h>
 #include <sys/select.h>
@@ -285,23 +284,12 @@ int echo() {
   }
 }
 
-void* read_in_a_thread(void*) {
-  steady();
-  return nullptr;
-}
-
 }  // namespace
 
 int main(int count, char** words) {
   const char* what = count > 1 ? words[1] : "";
   if (std::strcmp(what, "echo") == 0) return echo();
   if (std::strcmp(what, "check") == 0 && count == 3) return check(words[2]);
-  if (std::strcmp(what, "fork") == 0) return fork() < 0 ? 1 : 0;
-  if (std::strcmp(what, "thread") == 0) {
-    pthread_t thread{};
-    pthread_create(&thread, nullptr, read_in_a_thread, nullptr);
-    return pthread_join(thread, nullptr);
-  }
   if (std::strcmp(what, "spin") == 0) {
     for (;;) steady();
   }

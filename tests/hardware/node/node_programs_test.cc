@@ -20,6 +20,7 @@ namespace simbench::hardware {
 namespace {
 
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 class NodeProgramsTest : public testing::Test {
  protected:
@@ -67,7 +68,7 @@ TEST_F(NodeProgramsTest, AllReadingsAndStampsAreOfTheHostsClock) {
 TEST_F(NodeProgramsTest, NoClockOfTheMachineCanBeSet) {
   const std::string ending =
       run({std::string(SIMBENCH_PROGRAMS) + "/simbench_escapes", "clock_settime"});
-  EXPECT_THAT(ending, HasSubstr("clock_settime was not intercepted"));
+  EXPECT_THAT(ending, MatchesRegex(".*clock_settime\\(.*\\) was not intercepted.*"));
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ TEST_F(Daemons, AConfigurationThatADaemonRefusesIsSaidInItsWords) {
   EXPECT_THAT(sync.notes(),
               testing::Each(testing::AllOf(
                   testing::StartsWith("host"), testing::HasSubstr(": chronyd: exited"),
-                  testing::HasSubstr("Invalid directive at line 1 in file ./client.conf"))));
+                  testing::HasSubstr("Invalid directive at line 1 in file /files/client.conf"))));
 }
 
 }  // namespace

@@ -148,8 +148,6 @@ TEST_F(ProgramSyncTest, AProgramThatEndsIsAFailureWithItsLastWords) {
 }
 
 TEST_F(ProgramSyncTest, WhatCannotBeSimulatedIsSaid) {
-  EXPECT_THAT(ending_of("fork"), HasSubstr("goes to the background"));
-  EXPECT_THAT(ending_of("thread"), HasSubstr("a second thread"));
   EXPECT_THAT(ending_of("spin"), HasSubstr("never waits"));
   EXPECT_THAT(ending_of("garbage"), HasSubstr("asked what the world does not know"));
 }

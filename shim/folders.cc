@@ -1,0 +1,120 @@
+// Folders: their names come in order, which is the machine's otherwise.
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "shim/link.h"
+#include "shim/paths.h"
+
+namespace simbench::shim {
+namespace {
+
+constexpr int kMostFolders = 64;
+constexpr std::size_t kMostNames = 16'384;
+
+// The entries of an open folder, in order.
+struct Listing {
+  DIR* folder = nullptr;
+  dirent* entries = nullptr;
+  std::size_t count = 0;
+  std::size_t next = 0;
+};
+Listing listings[kMostFolders];
+
+Listing* listing_of(DIR* folder) {
+  for (Listing& each : listings) {
+    if (each.folder == folder) return &each;
+  }
+  return nullptr;
+}
+
+int compare(const void* one, const void* other) {
+  return strcmp(static_cast<const dirent*>(one)->d_name, static_cast<const dirent*>(other)->d_name);
+}
+
+void forget(Listing& listing) {
+  if (listing.entries != nullptr) munmap(listing.entries, kMostNames * sizeof(dirent));
+  listing = {};
+}
+
+// Pages that are not used take no memory.
+bool read_all(Listing& listing) {
+  void* memory = mmap(nullptr, kMostNames * sizeof(dirent), PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) return false;
+  listing.entries = static_cast<dirent*>(memory);
+  const auto next = SIMBENCH_REAL(readdir);
+  while (const dirent* entry = next(listing.folder)) {
+    if (listing.count == kMostNames) break;
+    memcpy(&listing.entries[listing.count++], entry, entry->d_reclen);
+  }
+  qsort(listing.entries, listing.count, sizeof(dirent), compare);
+  return true;
+}
+
+DIR* keep(DIR* folder) {
+  if (folder == nullptr || !is_simulated()) return folder;
+  Listing* place = listing_of(nullptr);
+  if (place != nullptr) *place = {.folder = folder};
+  return folder;
+}
+
+}  // namespace
+
+SIMBENCH_CALL DIR* opendir(const char* path) {
+  return keep(SIMBENCH_REAL(opendir)(OwnPath(path).text()));
+}
+
+SIMBENCH_CALL DIR* fdopendir(int fd) { return keep(SIMBENCH_REAL(fdopendir)(fd)); }
+
+SIMBENCH_CALL dirent* readdir(DIR* folder) {
+  Listing* listing = is_simulated() ? listing_of(folder) : nullptr;
+  if (listing == nullptr) return SIMBENCH_REAL(readdir)(folder);
+  if (listing->entries == nullptr && !read_all(*listing)) return nullptr;
+  if (listing->next == listing->count) return nullptr;
+  return &listing->entries[listing->next++];
+}
+
+SIMBENCH_CALL dirent64* readdir64(DIR* folder) {
+  return reinterpret_cast<dirent64*>(readdir(folder));
+}
+
+SIMBENCH_CALL void rewinddir(DIR* folder) {
+  SIMBENCH_REAL(rewinddir)(folder);
+  if (Listing* listing = listing_of(folder)) {
+    forget(*listing);
+    listing->folder = folder;
+  }
+}
+
+SIMBENCH_CALL long telldir(DIR* folder) {
+  const Listing* listing = listing_of(folder);
+  return listing != nullptr ? static_cast<long>(listing->next) : SIMBENCH_REAL(telldir)(folder);
+}
+
+SIMBENCH_CALL void seekdir(DIR* folder, long place) {
+  Listing* listing = listing_of(folder);
+  if (listing == nullptr) return SIMBENCH_REAL(seekdir)(folder, place);
+  if (static_cast<std::size_t>(place) <= listing->count) {
+    listing->next = static_cast<std::size_t>(place);
+  }
+}
+
+SIMBENCH_CALL int closedir(DIR* folder) {
+  if (Listing* listing = listing_of(folder)) forget(*listing);
+  return SIMBENCH_REAL(closedir)(folder);
+}
+
+SIMBENCH_CALL int scandir(const char* path, dirent*** names, int (*select)(const dirent*),
+                          int (*order)(const dirent**, const dirent**)) {
+  const auto in_order = order != nullptr || !is_simulated() ? order : alphasort;
+  return SIMBENCH_REAL(scandir)(OwnPath(path).text(), names, select, in_order);
+}
+
+SIMBENCH_CALL int scandir64(const char*, dirent64***, int (*)(const dirent64*),
+                            int (*)(const dirent64**, const dirent64**))
+    __attribute__((alias("scandir")));
+
+}  // namespace simbench::shim
