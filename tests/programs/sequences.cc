@@ -3,7 +3,7 @@
 // errno, and what it filled in. No line depends on the machine or on time, so that the same seed
 // prints the same under Linux and in the simulated world.
 //
-//   sequences FIRST COUNT
+//   sequences FIRST COUNT [stay]
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -299,7 +299,7 @@ class Sequence {
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 3) return 2;
+  if (count < 3) return 2;
   sigset_t blocked{};
   sigemptyset(&blocked);
   sigaddset(&blocked, SIGUSR1);
@@ -313,5 +313,7 @@ int main(int count, char** words) {
     sigtimedwait(&blocked, nullptr, &none);
   }
   std::puts("done");
+  std::fflush(stdout);
+  if (count > 3) pause();  // as daemons do
   return 0;
 }

@@ -1,72 +1,19 @@
 // Programs that look at the calls of the network, in a world of three hosts.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "scenarios/loader.h"
-#include "sim/programs/program_sync.h"
-#include "tests/sim/host/service_world.h"
+#include "tests/sim/programs/calls_on_hosts.h"
 
 namespace simbench::sim {
 namespace {
 
 using testing::Each;
 using testing::ElementsAre;
-using testing::IsEmpty;
 
-constexpr std::size_t kCallingHosts = 3;
-
-using Words = std::vector<std::string>;
-
-class NetworkCallsTest : public testing::Test {
- protected:
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  // Runs the program on all hosts, with these words; returns what each host's first said.
-  std::vector<std::string> run(const std::string& program, std::vector<Words> master,
-                               std::vector<Words> slave,
-                               const std::vector<scenarios::Override>& changes = {}) {
-    std::filesystem::remove_all(folder_);
-    const std::string path = std::string(SIMBENCH_PROGRAMS) + "/simbench_" + program;
-    for (std::vector<Words>* commands : {&master, &slave}) {
-      for (Words& each : *commands) each.insert(each.begin(), path);
-    }
-    ProgramSync sync({.pipeline = "test",
-                      .programs = {.master = std::move(master), .slave = std::move(slave)},
-                      .shim = SIMBENCH_SHIM,
-                      .log_folder = folder_,
-                      .hosts = kCallingHosts});
-    std::vector<scenarios::Override> all{{"/hosts/count", "3"}, {"/cameras/count", "3"}};
-    all.insert(all.end(), changes.begin(), changes.end());
-    ServiceWorld world(scenarios::load_scenario("6host_star", all), 1);
-    world.start(sync);
-    world.run_until(60);
-    EXPECT_THAT(world.record.outcomes, IsEmpty()) << world.record.outcomes.front().message;
-    std::vector<std::string> outputs;
-    for (std::size_t host = 0; host < kCallingHosts; ++host) {
-      outputs.push_back(output(host, program));
-    }
-    return outputs;
-  }
-
- private:
-  std::string output(std::size_t host, const std::string& program) const {
-    const auto path = fmt::format("{}/test/seed1/host{}/0_simbench_{}.log", folder_, host, program);
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-  }
-
-  const std::string folder_ = testing::TempDir() + "/network_calls" +
-                              testing::UnitTest::GetInstance()->current_test_info()->name();
-};
+class NetworkCallsTest : public CallsOnHosts {};
 
 TEST_F(NetworkCallsTest, GroupsDoWhatManPagesPromise) {
   const std::vector<std::string> said = run("group_calls", {{"check"}}, {{"answer"}});

@@ -1,7 +1,5 @@
 // What the world makes of requests that no honest program sends: it answers or ends the program
 // with a note, whatever the bytes are.
-#include "sim/programs/program.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -23,6 +21,7 @@
 
 #include "algorithms/host_sync/join.h"
 #include "scenarios/loader.h"
+#include "sim/programs/program.h"
 #include "tests/sim/host/service_world.h"
 
 namespace simbench::sim {
