@@ -81,12 +81,12 @@ constexpr unsigned long kRestorer = SA_RESTORER;
 constexpr unsigned long kRestorer = 0x04000000;
 #endif
 
-// Where a handler returns to.
+// Where a handler returns to: with the bytes by which unwinders know it.
 #if defined(__x86_64__)
 extern "C" void simbench_return_from_signal();
 __asm__(
     ".text\n.hidden simbench_return_from_signal\nsimbench_return_from_signal:\n"
-    "mov $15, %eax\nsyscall\n");
+    "movq $15, %rax\nsyscall\n");
 #elif defined(__aarch64__)
 extern "C" void simbench_return_from_signal();
 __asm__(

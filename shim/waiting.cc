@@ -56,6 +56,7 @@ std::int64_t ask_to_wait(Until& until, std::uint32_t flags, Sent interests, Rece
     if (left_ns != nullptr) *left_ns = left;
     if (until.kind == Deadline::kAfter) until.ns = left;
     if (reason == EINTR && handled_signals().all == before) {
+      pthread_testcancel();
       if ((flags & kWatchesReal) == 0) continue;
       reason = EAGAIN;  // the signal may be what signalfd() waits for
     }
