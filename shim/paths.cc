@@ -33,11 +33,13 @@ bool is_own(const char* path) {
 // The folders that lead to it, within the host's folder.
 void make_folders(char* path) {
   const int before = errno;
+  const long mask = machine_call(SYS_umask, 0);
   for (char* slash = path + strlen(folder) + 1; (slash = strchr(slash, '/')) != nullptr; ++slash) {
     *slash = '\0';
     machine_call(SYS_mkdirat, AT_FDCWD, path, 0755);
     *slash = '/';
   }
+  machine_call(SYS_umask, mask);
   errno = before;
 }
 

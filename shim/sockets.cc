@@ -361,7 +361,7 @@ SIMBENCH_CALL ssize_t recvmsg(int fd, msghdr* message, int flags) {
 
 SIMBENCH_CALL int recvmmsg(int fd, mmsghdr* messages, unsigned int count, int flags,
                            timespec* timeout) {
-  if (!is_socket(fd)) {
+  if (!is_socket(fd) && !is_local(fd)) {
     const int received = SIMBENCH_REAL(recvmmsg)(fd, messages, count, flags, timeout);
     for (int i = 0; i < received; ++i) convert_stamps(messages[i].msg_hdr);
     return received;
@@ -369,7 +369,7 @@ SIMBENCH_CALL int recvmmsg(int fd, mmsghdr* messages, unsigned int count, int fl
   for (unsigned int i = 0; i < count; ++i) {
     const bool may_wait = i == 0 || (flags & MSG_WAITFORONE) == 0;
     const int each = (flags & ~MSG_WAITFORONE) | (may_wait ? 0 : MSG_DONTWAIT);
-    const ssize_t received = receive_message(fd, messages[i].msg_hdr, each);
+    const ssize_t received = recvmsg(fd, &messages[i].msg_hdr, each);
     if (received < 0) return i > 0 ? static_cast<int>(i) : -1;
     messages[i].msg_len = static_cast<unsigned int>(received);
   }

@@ -211,7 +211,7 @@ class Hostile {
                                          INT32_MAX,
                                          INT32_MIN,
                                          INT64_MAX / 2,
-                                         1'767'225'600'000'000'000};
+                                         shim::kWorldBegin};
     const std::int64_t some = kNumbers[below(std::size(kNumbers))];
     return one_in(4) ? static_cast<std::int64_t>(random_()) : some;
   }
