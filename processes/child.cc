@@ -87,7 +87,7 @@ void forget_parent() {
   setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, Child::kMostOutput);
-  limit(RLIMIT_AS, Child::kMostMemory);
+  limit(RLIMIT_DATA, Child::kMostMemory);
   limit(RLIMIT_NOFILE, Child::kMostDescriptors);
   if (chdir(plan.folder) != 0) _exit(kCannotRun);
   const int input = open("/dev/null", O_RDONLY);
@@ -119,7 +119,7 @@ Child::Child(const Settings& settings)
       obstacle_ = error.what();
     }
   }
-  link_ = std::make_unique<Link>(link, patience_);
+  link_ = std::make_unique<ThreadLink>(link, patience_);
 }
 
 std::string Child::start(const Settings& settings, int& link) {

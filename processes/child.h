@@ -41,7 +41,7 @@
 #include <vector>
 
 #include "processes/call_filter.h"
-#include "processes/link.h"
+#include "processes/thread_link.h"
 
 namespace simbench::processes {
 
@@ -95,7 +95,7 @@ class Child {
   std::string log_;
   std::string obstacle_;  // to its start
   std::chrono::milliseconds patience_;
-  std::unique_ptr<Link> link_;
+  std::unique_ptr<ThreadLink> link_;
   pid_t process_ = -1;
   bool has_asked_ = false;
   Served served_;

@@ -227,10 +227,10 @@ namespace {
 constexpr std::size_t kMostListed = 1024;
 
 // The words of execl() and its kin.
-struct Listed {
+struct ListedWords {
   char* words[kMostListed] = {};
   bool fits = true;
-  Listed(const char* first, va_list more) {
+  ListedWords(const char* first, va_list more) {
     std::size_t count = 0;
     for (const char* word = first; word != nullptr; word = va_arg(more, const char*)) {
       if (count + 1 == kMostListed) fits = false;
@@ -244,7 +244,7 @@ struct Listed {
 SIMBENCH_CALL int execl(const char* path, const char* first, ...) {
   va_list more;
   va_start(more, first);
-  const Listed listed(first, more);
+  const ListedWords listed(first, more);
   va_end(more);
   return listed.fits ? execute(path, listed.words, environ) : refuse(E2BIG);
 }
@@ -252,7 +252,7 @@ SIMBENCH_CALL int execl(const char* path, const char* first, ...) {
 SIMBENCH_CALL int execlp(const char* name, const char* first, ...) {
   va_list more;
   va_start(more, first);
-  const Listed listed(first, more);
+  const ListedWords listed(first, more);
   va_end(more);
   return listed.fits ? execvpe(name, listed.words, environ) : refuse(E2BIG);
 }
@@ -260,7 +260,7 @@ SIMBENCH_CALL int execlp(const char* name, const char* first, ...) {
 SIMBENCH_CALL int execle(const char* path, const char* first, ...) {
   va_list more;
   va_start(more, first);
-  const Listed listed(first, more);
+  const ListedWords listed(first, more);
   char* const* environment = va_arg(more, char* const*);
   va_end(more);
   return listed.fits ? execute(path, listed.words, environment) : refuse(E2BIG);

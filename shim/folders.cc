@@ -34,7 +34,7 @@ int compare(const void* one, const void* other) {
   return strcmp(static_cast<const dirent*>(one)->d_name, static_cast<const dirent*>(other)->d_name);
 }
 
-void forget(Listing& listing) {
+void drop_listing(Listing& listing) {
   if (listing.entries != nullptr) munmap(listing.entries, kMostNames * sizeof(dirent));
   listing = {};
 }
@@ -84,7 +84,7 @@ SIMBENCH_CALL dirent64* readdir64(DIR* folder) {
 SIMBENCH_CALL void rewinddir(DIR* folder) {
   SIMBENCH_REAL(rewinddir)(folder);
   if (Listing* listing = listing_of(folder)) {
-    forget(*listing);
+    drop_listing(*listing);
     listing->folder = folder;
   }
 }
@@ -103,7 +103,7 @@ SIMBENCH_CALL void seekdir(DIR* folder, long place) {
 }
 
 SIMBENCH_CALL int closedir(DIR* folder) {
-  if (Listing* listing = listing_of(folder)) forget(*listing);
+  if (Listing* listing = listing_of(folder)) drop_listing(*listing);
   return SIMBENCH_REAL(closedir)(folder);
 }
 

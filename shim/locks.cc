@@ -19,8 +19,8 @@ namespace {
 
 using Value = std::uint32_t;
 
-Value load(const Value* place) { return __atomic_load_n(place, __ATOMIC_SEQ_CST); }
-void store(Value* place, Value value) { __atomic_store_n(place, value, __ATOMIC_SEQ_CST); }
+Value value_at(const Value* place) { return __atomic_load_n(place, __ATOMIC_SEQ_CST); }
+void put_value(Value* place, Value value) { __atomic_store_n(place, value, __ATOMIC_SEQ_CST); }
 
 Lock lock_at(const void* place, int operation, Value bits = ~0U) {
   return {.address = reinterpret_cast<std::uintptr_t>(place),
@@ -84,23 +84,23 @@ Word wake_and_change(const Word* a, int operation) {
   const std::int32_t compared = static_cast<std::int32_t>(code << 20U) >> 20U;
   const Value kind = (code >> 28U) & 15U;
   if ((kind & FUTEX_OP_OPARG_SHIFT) != 0) operand = 1 << (operand & 31);
-  const Value old = load(second);
+  const Value old = value_at(second);
   const auto given = static_cast<Value>(operand);
   switch (kind & 7U) {
     case FUTEX_OP_SET:
-      store(second, given);
+      put_value(second, given);
       break;
     case FUTEX_OP_ADD:
-      store(second, old + given);
+      put_value(second, old + given);
       break;
     case FUTEX_OP_OR:
-      store(second, old | given);
+      put_value(second, old | given);
       break;
     case FUTEX_OP_ANDN:
-      store(second, old & ~given);
+      put_value(second, old & ~given);
       break;
     case FUTEX_OP_XOR:
-      store(second, old ^ given);
+      put_value(second, old ^ given);
       break;
     default:
       return -ENOSYS;
@@ -121,21 +121,21 @@ Word take_owned(Value* place, int operation, const timespec* time, bool waits, b
   LockWait wait{.lock = lock_at(place, operation)};
   if (!set_deadline(wait, time, true, is_system)) return -EINVAL;
   for (;;) {
-    const Value now = load(place);
+    const Value now = value_at(place);
     if ((now & FUTEX_TID_MASK) == 0) {
-      store(place, own | (now & (FUTEX_WAITERS | FUTEX_OWNER_DIED)));
+      put_value(place, own | (now & (FUTEX_WAITERS | FUTEX_OWNER_DIED)));
       return 0;
     }
     if ((now & FUTEX_TID_MASK) == own) return -EDEADLK;
     if (!waits) return -EAGAIN;
-    store(place, now | FUTEX_WAITERS);
+    put_value(place, now | FUTEX_WAITERS);
     const Word woken = wait_for_wake(wait);
     if (woken == -ETIMEDOUT) return woken;
   }
 }
 
 Word give_owned(Value* place, int operation) {
-  store(place, load(place) & FUTEX_WAITERS);
+  put_value(place, value_at(place) & FUTEX_WAITERS);
   wake(lock_at(place, operation), 1);
   return 0;
 }
@@ -155,7 +155,7 @@ Word serve_futex(const Word* a) {
       const bool has_bits = command == FUTEX_WAIT_BITSET;
       LockWait wait{.lock = lock_at(place, operation, has_bits ? static_cast<Value>(a[5]) : ~0U)};
       if (wait.lock.bits == 0 || !set_deadline(wait, time, has_bits, is_system)) return -EINVAL;
-      return load(place) != value ? -EAGAIN : wait_for_wake(wait);
+      return value_at(place) != value ? -EAGAIN : wait_for_wake(wait);
     }
     case FUTEX_WAKE:
       return static_cast<Word>(wake(lock_at(place, operation), static_cast<int>(a[2])));
@@ -163,7 +163,7 @@ Word serve_futex(const Word* a) {
       return static_cast<Word>(
           wake(lock_at(place, operation, static_cast<Value>(a[5])), static_cast<int>(a[2])));
     case FUTEX_CMP_REQUEUE:
-      if (load(place) != static_cast<Value>(a[5])) return -EAGAIN;
+      if (value_at(place) != static_cast<Value>(a[5])) return -EAGAIN;
       [[fallthrough]];
     case FUTEX_REQUEUE:
       return requeue(place, reinterpret_cast<Value*>(a[4]), operation, static_cast<int>(a[2]),

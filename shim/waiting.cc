@@ -64,7 +64,7 @@ std::int64_t ask_to_wait(Until& until, std::uint32_t flags, Sent interests, Rece
   }
 }
 
-bool is_real(Kind kind) { return !is_of_the_world(kind) || kind == Kind::kEpoll; }
+bool is_of_the_kernel(Kind kind) { return !is_of_the_world(kind) || kind == Kind::kEpoll; }
 
 // What of these the world and the kernel watch.
 struct Watched {
@@ -77,7 +77,7 @@ struct Watched {
 void divide(const pollfd* interests, nfds_t count, Watched& watched) {
   for (nfds_t i = 0; i < count; ++i) {
     const Kind kind = kind_of(interests[i].fd);
-    const bool has_real = is_real(kind);
+    const bool has_real = is_of_the_kernel(kind);
     watched.watches_real |= has_real && interests[i].fd >= 0;
     watched.real[i] = {
         .fd = has_real ? interests[i].fd : -1, .events = interests[i].events, .revents = 0};

@@ -25,7 +25,7 @@ class EpollSet;
 class OpenObject {
  public:
   using What = std::variant<UdpSocket, std::shared_ptr<StreamSocket>, ProcessTimer,
-                            std::unique_ptr<EpollSet>>;
+                            std::shared_ptr<EpollSet>>;
 
   explicit OpenObject(What what);
   ~OpenObject();
@@ -41,7 +41,7 @@ class OpenObject {
   }
   ProcessTimer* timer() { return std::get_if<ProcessTimer>(&what_); }
   EpollSet* set() {
-    const auto* found = std::get_if<std::unique_ptr<EpollSet>>(&what_);
+    const auto* found = std::get_if<std::shared_ptr<EpollSet>>(&what_);
     return found != nullptr ? found->get() : nullptr;
   }
 

@@ -64,7 +64,7 @@ class Process {
  public:
   static constexpr std::uint64_t kMostASecond = 50'000;
 
-  // Of the host and of the program; they must outlive the process.
+  // What belongs to the host and the program; it must outlive the process.
   struct Surroundings {
     SimHost& host;
     HostNetwork& network;

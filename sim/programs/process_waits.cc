@@ -112,7 +112,7 @@ Task<Process::Answer> Process::wait_for_wake(ProgramThread& thread, const ChildR
 
 Process::Answer Process::open_set(int fd) {
   if (open_.size() >= kMostOpen) return {.error = EMFILE};
-  open(fd, std::make_unique<EpollSet>());
+  open(fd, std::make_shared<EpollSet>());
   return {};
 }
 

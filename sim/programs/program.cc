@@ -17,7 +17,7 @@
 namespace simbench::sim {
 namespace {
 
-using processes::Link;
+using processes::ThreadLink;
 using shim::Call;
 
 constexpr std::size_t kMostNote = 400;  // bytes of it in the row's note
@@ -61,7 +61,7 @@ Process::Surroundings Program::for_processes() {
 }
 
 ProgramThread& Program::add_thread(Process& process, std::int32_t number,
-                                   std::unique_ptr<Link> link) {
+                                   std::unique_ptr<ThreadLink> link) {
   ProgramThread& thread = threads_.emplace_back(around_.host, process, number, std::move(link));
   around_.processes.add_thread(thread);
   return thread;
@@ -208,7 +208,7 @@ Task<Process::Answer> Program::answer(ProgramThread& thread, ChildRequest reques
 
 Task<Process::Answer> Program::announce(ProgramThread& maker, ChildRequest request) {
   if (request.passed < 0) throw BadRequest("made a thread or process without a link");
-  auto link = std::make_unique<Link>(request.passed, child_.patience());
+  auto link = std::make_unique<ThreadLink>(request.passed, child_.patience());
   if (around_.processes.threads() >= HostProcesses::kMost) co_return Answer{.error = EAGAIN};
   const std::int32_t number = around_.processes.take_number();
   Process* process = maker.process;

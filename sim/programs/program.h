@@ -43,7 +43,7 @@ namespace simbench::sim {
 
 class Program {
  public:
-  // Of the host; they must outlive the program.
+  // What belongs to the host; it must outlive the program.
   struct Surroundings {
     SimHost& host;
     HostNetwork& network;
@@ -69,7 +69,7 @@ class Program {
 
   Process::Surroundings for_processes();
   ProgramThread& add_thread(Process& process, std::int32_t number,
-                            std::unique_ptr<processes::Link> link);
+                            std::unique_ptr<processes::ThreadLink> link);
   std::optional<ChildRequest> next(ProgramThread& thread);
   void reply(ProgramThread& thread, const Answer& answer);
   // Until the thread, its process or the program has ended.

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "processes/link.h"
+#include "processes/thread_link.h"
 #include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
@@ -29,7 +29,7 @@ struct ProgramThread {
   };
 
   ProgramThread(SimHost& host, Process& of, std::int32_t thread_number,
-                std::unique_ptr<processes::Link> own_link)
+                std::unique_ptr<processes::ThreadLink> own_link)
       : process(&of),
         number(thread_number),
         link(std::move(own_link)),
@@ -37,7 +37,7 @@ struct ProgramThread {
 
   Process* process;
   std::int32_t number;
-  std::unique_ptr<processes::Link> link;  // null: of the program's first thread
+  std::unique_ptr<processes::ThreadLink> link;  // null: of the program's first thread
   WaitPoint woken;
   std::uint64_t signals_seen = 0;
   std::optional<LockWait> lock_wait{};

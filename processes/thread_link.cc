@@ -1,4 +1,4 @@
-#include "processes/link.h"
+#include "processes/thread_link.h"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -45,7 +45,7 @@ bool passes_descriptor(const ChildRequest& request) {
 
 }  // namespace
 
-Link::Link(int descriptor, std::chrono::milliseconds patience)
+ThreadLink::ThreadLink(int descriptor, std::chrono::milliseconds patience)
     : descriptor_(descriptor), patience_(patience) {
   const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience_);
   const std::chrono::microseconds rest = patience_ - whole_s;
@@ -53,16 +53,16 @@ Link::Link(int descriptor, std::chrono::milliseconds patience)
   setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
 }
 
-Link::~Link() {
+ThreadLink::~ThreadLink() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-void Link::ask_for_sender() {
+void ThreadLink::ask_for_sender() {
   const int on = 1;
   asks_for_sender_ = setsockopt(descriptor_, SOL_SOCKET, SO_PASSCRED, &on, sizeof on) == 0;
 }
 
-std::optional<ChildRequest> Link::next() {
+std::optional<ChildRequest> ThreadLink::next() {
   ChildRequest request;
   buffer_.resize(shim::kMostData);
   std::array<iovec, 2> pieces{
@@ -93,13 +93,13 @@ std::optional<ChildRequest> Link::next() {
   return request;
 }
 
-void Link::await_request() const {
+void ThreadLink::await_request() const {
   pollfd interest{.fd = descriptor_, .events = POLLIN, .revents = 0};
   while (poll(&interest, 1, static_cast<int>(patience_.count())) < 0 && errno == EINTR) {
   }
 }
 
-void Link::reply(std::int64_t value, int error, std::span<const std::byte> data) {
+void ThreadLink::reply(std::int64_t value, int error, std::span<const std::byte> data) {
   shim::Reply head{.value = value, .error = error, .size = static_cast<std::uint32_t>(data.size())};
   std::array<iovec, 2> pieces{
       {{&head, sizeof head}, {const_cast<std::byte*>(data.data()), data.size()}}};

@@ -3,7 +3,7 @@
 // Nothing that comes over it is trusted: is_whole says whether a request is as long as it says. A
 // descriptor is taken with the requests that pass one; of others it is closed.
 //
-//   Link link(descriptor, std::chrono::seconds(30));
+//   ThreadLink link(descriptor, std::chrono::seconds(30));
 //   while (const std::optional<ChildRequest> request = link.next()) link.reply(0, 0, {});
 //
 // Complexity: a request and its reply are a system call each.
@@ -30,14 +30,14 @@ struct ChildRequest {
   pid_t sender = 0;       // the process, as the kernel says; of the first request, where asked for
 };
 
-class Link {
+class ThreadLink {
  public:
   // Owns the descriptor; -1: none.
-  explicit Link(int descriptor = -1,
-                std::chrono::milliseconds patience = std::chrono::milliseconds(0));
-  ~Link();
-  Link(const Link&) = delete;
-  Link& operator=(const Link&) = delete;
+  explicit ThreadLink(int descriptor = -1,
+                      std::chrono::milliseconds patience = std::chrono::milliseconds(0));
+  ~ThreadLink();
+  ThreadLink(const ThreadLink&) = delete;
+  ThreadLink& operator=(const ThreadLink&) = delete;
 
   int descriptor() const { return descriptor_; }
   // Once, before the other end sends anything: the first request says who sent it.
