@@ -1,7 +1,7 @@
 // What the shim does before a program's own code, and in a process that has been forked.
 //
 //   serve_refused_calls();
-//   hide_machine(environment);
+//   hide_machine(environ);
 #pragma once
 
 #include <signal.h>

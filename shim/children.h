@@ -1,5 +1,6 @@
 // The processes that a program has started, and what starts others.
 //
+//   char name[] = "chronyd";
 //   char* const words[] = {name, nullptr};
 //   return execute("/usr/sbin/chronyd", words, environ);
 #pragma once

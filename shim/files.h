@@ -1,5 +1,6 @@
 // The times of files that a program writes.
 //
+//   const int fd = open("drift", O_WRONLY);
 //   note_written(fd, true);
 //   stamp_file(fd);  // before it is closed
 #pragma once

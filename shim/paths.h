@@ -9,7 +9,7 @@
 // The machine's files can be read as far as it is allowed; nothing of its is written.
 //
 //   const OwnPath path("/run/chrony/chronyd.pid", Use::kCreates);
-//   const int fd = open_there(path.text());  // "/tmp/.../host1/run/chrony/chronyd.pid"
+//   print(path.text());  // "/tmp/.../host1/run/chrony/chronyd.pid"
 #pragma once
 
 #include <limits.h>

@@ -32,9 +32,9 @@ inline constexpr char kLinkVariable[] = "SIMBENCH_LINK";
 // What a program that was started by another has of its descriptors: "fd:kind:number ...".
 inline constexpr char kDescriptorsVariable[] = "SIMBENCH_DESCRIPTORS";
 inline constexpr char kFolderVariable[] = "SIMBENCH_FOLDER";
-// The time of day at which worlds begin: the beginning of 2030, ns. Programs refuse times before
-// they were built.
-inline constexpr std::int64_t kWorldBegin = 1'893'456'000'000'000'000;
+// The time of day at which worlds begin: the beginning of 2028, ns. Programs refuse times before
+// they were built, and OpenNTPD those from 2030 on.
+inline constexpr std::int64_t kWorldBegin = 1'830'297'600'000'000'000;
 // What a program sees its host's folder as (shim/paths.h).
 inline constexpr char kFolder[] = "/files";
 inline constexpr std::size_t kMostData = 65536;

@@ -2,7 +2,7 @@
 //
 //   pollfd interest{.fd = 7, .events = POLLIN, .revents = 0};
 //   if (wait_for_ready(7, POLLIN, -1)) print("data");
-//   if (!has_child_ended() && !wait_for_activity(false)) return -1;
+//   if (!wait_for_activity(false)) print("a signal");
 #pragma once
 
 #include <poll.h>

@@ -24,7 +24,7 @@
 namespace simbench::sim {
 
 // The system clocks of the simulated world begin at 0; those of its programs at this time, the
-// beginning of 2030, since some refuse earlier ones.
+// beginning of 2028, since some refuse earlier ones.
 inline constexpr std::int64_t kEpochNs = shim::kWorldBegin;
 
 constexpr std::int64_t epoch_ns(HostTime time) { return nanoseconds_of(time) + kEpochNs; }

@@ -15,9 +15,12 @@
 // the reply to what it asks next. A process that asks more than kMostASecond times within a second
 // of simulated time is ended.
 //
-//   Process process(surroundings, 100, 1);
-//   ProgramThread thread(host, process, 100, nullptr);
-//   const Process::Answer answer = co_await process.answer(thread, std::move(request));
+//   Task<void> read_clock(SimHost& host, const Process::Surroundings& surroundings) {
+//     Process process(surroundings, 100, 1);
+//     ProgramThread thread(host, process, 100, nullptr);
+//     ChildRequest request{.head = {.call = shim::Call::kReadClock}};
+//     const Process::Answer answer = co_await process.answer(thread, std::move(request));
+//   }
 #pragma once
 
 #include <sys/types.h>

@@ -16,9 +16,10 @@
 // program, with a note. At most HostProcesses::kMost threads and processes are on a host; fork()
 // and pthread_create() then fail with EAGAIN.
 //
-//   Program program({host, network, kernel, card, processes},
-//                   {.command = {"/usr/sbin/chronyd", "-d"}});
-//   boost::asio::co_spawn(context, program.serve(), boost::asio::detached);
+//   void run(const Program::Surroundings& surroundings, VirtualContext& context) {
+//     Program program(surroundings, {.command = {"/usr/sbin/chronyd", "-d"}});
+//     boost::asio::co_spawn(context, program.serve(), boost::asio::detached);
+//   }
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,9 @@
 // A thread of a simulated program: its link, and what it waits for.
 //
-//   ProgramThread thread(host, process, number, nullptr);
-//   co_await thread.woken.wait(std::nullopt);
+//   Task<void> wait(SimHost& host, Process& process) {
+//     ProgramThread thread(host, process, 100, nullptr);
+//     co_await thread.woken.wait(std::nullopt);
+//   }
 #pragma once
 
 #include <fmt/format.h>
