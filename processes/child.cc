@@ -166,9 +166,9 @@ void Child::follow_thread() {
   sched_setaffinity(process_, sizeof only, &only);  // without it all goes on, slower
 }
 
-std::optional<ChildRequest> Child::next() {
+std::optional<ChildRequest> Child::next(const std::function<bool()>& is_asleep) {
   if (!obstacle_.empty()) return std::nullopt;
-  std::optional<ChildRequest> request = link_->next();
+  std::optional<ChildRequest> request = link_->next(is_asleep);
   has_asked_ |= request.has_value();
   return request;
 }

@@ -70,8 +70,10 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Nothing: it has ended, or has computed for longer than kPatience.
-  std::optional<ChildRequest> next();
+  // Nothing: it has ended, or has computed for longer than kPatience, or is asleep, as
+  // ThreadLink::next() has it.
+  std::optional<ChildRequest> next(const std::function<bool()>& is_asleep = {});
+  bool was_asleep() const { return link_->was_asleep(); }
   // The descriptor of its link; -1 if it could not be started.
   int link() const { return link_->descriptor(); }
   std::chrono::milliseconds patience() const { return patience_; }

@@ -47,9 +47,8 @@ bool passes_descriptor(const ChildRequest& request) {
 
 ThreadLink::ThreadLink(int descriptor, std::chrono::milliseconds patience)
     : descriptor_(descriptor), patience_(patience) {
-  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience_);
-  const std::chrono::microseconds rest = patience_ - whole_s;
-  const timeval limit{.tv_sec = whole_s.count(), .tv_usec = rest.count()};
+  const std::chrono::microseconds look = std::min(kLook, patience_);
+  const timeval limit{.tv_sec = 0, .tv_usec = look.count()};
   setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
 }
 
@@ -62,7 +61,7 @@ void ThreadLink::ask_for_sender() {
   asks_for_sender_ = setsockopt(descriptor_, SOL_SOCKET, SO_PASSCRED, &on, sizeof on) == 0;
 }
 
-std::optional<ChildRequest> ThreadLink::next() {
+std::optional<ChildRequest> ThreadLink::next(const std::function<bool()>& is_asleep) {
   ChildRequest request;
   buffer_.resize(shim::kMostData);
   std::array<iovec, 2> pieces{
@@ -70,15 +69,24 @@ std::optional<ChildRequest> ThreadLink::next() {
   alignas(cmsghdr) std::array<unsigned char, kControl> control{};
   msghdr message{};
   ssize_t size = 0;
-  do {
+  was_asleep_ = false;
+  int seen_asleep = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (;;) {
     message = {};
     message.msg_iov = pieces.data();
     message.msg_iovlen = pieces.size();
     message.msg_control = control.data();
     message.msg_controllen = control.size();
     size = recvmsg(descriptor_, &message, MSG_CMSG_CLOEXEC);
-  } while (size < 0 && errno == EINTR);
-  was_too_slow_ = size < 0 && errno == EAGAIN;
+    if (size >= 0 || (errno != EINTR && errno != EAGAIN)) break;
+    was_too_slow_ = std::chrono::steady_clock::now() - begin >= patience_;
+    if (was_too_slow_) return std::nullopt;
+    if (errno == EINTR || !is_asleep) continue;
+    seen_asleep = is_asleep() ? seen_asleep + 1 : 0;
+    was_asleep_ = seen_asleep == 2;
+    if (was_asleep_) return std::nullopt;
+  }
   if (size <= 0) return std::nullopt;
   const auto whole = static_cast<std::size_t>(size);
   const std::size_t data_size = whole - std::min(whole, sizeof request.head);

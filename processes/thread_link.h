@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -32,6 +33,8 @@ struct ChildRequest {
 
 class ThreadLink {
  public:
+  static constexpr std::chrono::milliseconds kLook{20};
+
   // Owns the descriptor; -1: none.
   explicit ThreadLink(int descriptor = -1,
                       std::chrono::milliseconds patience = std::chrono::milliseconds(0));
@@ -42,9 +45,11 @@ class ThreadLink {
   int descriptor() const { return descriptor_; }
   // Once, before the other end sends anything: the first request says who sent it.
   void ask_for_sender();
-  // Nothing: the other end is closed, or has computed for longer than the patience.
-  std::optional<ChildRequest> next();
+  // Nothing: the other end is closed, has computed for longer than the patience, or is asleep:
+  // `is_asleep` is asked every kLook while there is no request, and must say so twice.
+  std::optional<ChildRequest> next(const std::function<bool()>& is_asleep = {});
   bool was_too_slow() const { return was_too_slow_; }
+  bool was_asleep() const { return was_asleep_; }
   // Waits until there is a request, an end, or the patience is over.
   void await_request() const;
   // One that is gone is found by next(). One that takes no replies loses them.
@@ -55,6 +60,7 @@ class ThreadLink {
   std::chrono::milliseconds patience_;
   bool asks_for_sender_ = false;
   bool was_too_slow_ = false;
+  bool was_asleep_ = false;
   Bytes buffer_{};
 };
 

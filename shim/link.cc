@@ -265,7 +265,7 @@ void tell_started(const Newcomer& newcomer, bool is_thread, int machine_number) 
 void begin_thread(const Newcomer& newcomer) {
   add_link(newcomer.link);
   Identity own{};
-  if (ask_for({.call = Call::kHello}, own) < 0) lose();
+  if (ask_for({.call = Call::kHello, .b = machine_call(SYS_gettid)}, own) < 0) lose();
   thread_number = own.thread;
 }
 

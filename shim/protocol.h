@@ -42,7 +42,8 @@ inline constexpr std::size_t kMostData = 65536;
 inline constexpr int kClockPage = 201;
 
 enum class Call : std::uint32_t {
-  kHello,        // a: 1: after exec(), data: int32[], the descriptors that are left -> Identity
+  kHello,        // a: 1: after exec(), data: int32[], the descriptors that are left; b: what the
+                 // machine calls the thread, if it is not the process's first -> Identity
   kNote,         // data: a text about what cannot be simulated; the program ends
   kReadClock,    // a: clockid, b: 1: no time passes -> value
   kSetClock,     // a: clockid, b: its new reading

@@ -9,6 +9,8 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <thread>
 #include <utility>
 
@@ -29,6 +31,17 @@ void await_end_of_thread(pid_t process, std::int64_t thread) {
   for (int i = 0; i < 2000 && std::filesystem::exists(place) && thread != process; ++i) {
     std::this_thread::sleep_for(std::chrono::microseconds(50));
   }
+}
+
+bool waits_for_machine(const ProgramThread& thread) {
+  const pid_t process = thread.process->machine();
+  const pid_t number = thread.machine > 0 ? thread.machine : process;
+  std::ifstream file(fmt::format("/proc/{}/task/{}/stat", process, number));
+  std::string text;
+  std::getline(file, text);
+  // Its name may have spaces and brackets; the state follows the last one.
+  const std::size_t end = text.rfind(") ");
+  return end != std::string::npos && text.compare(end + 2, 1, "S") == 0;
 }
 
 }  // namespace
@@ -83,9 +96,14 @@ void Program::stop() {
 }
 
 std::optional<ChildRequest> Program::next(ProgramThread& thread) {
-  if (thread.link == nullptr) return child_.next();
-  std::optional<ChildRequest> request = thread.link->next();
-  if (!request && thread.link->was_too_slow()) fail("computed for too long without waiting");
+  std::function<bool()> is_asleep;
+  if (threads_.size() > 1) is_asleep = [&thread] { return waits_for_machine(thread); };
+  if (thread.link == nullptr) return child_.next(is_asleep);
+  std::optional<ChildRequest> request = thread.link->next(is_asleep);
+  if (!request && thread.link->was_too_slow()) {
+    fail(fmt::format("computed for {} s without waiting",
+                     std::chrono::duration<double>(child_.patience()).count()));
+  }
   return request;
 }
 
@@ -108,9 +126,26 @@ bool Program::goes_on(const ProgramThread& thread) const {
   return !is_over_ && !thread.process->has_ended;
 }
 
+bool Program::was_asleep(const ProgramThread& thread) const {
+  return thread.link != nullptr ? thread.link->was_asleep() : child_.was_asleep();
+}
+
+Task<void> Program::wait_for_activity(ProgramThread& thread) {
+  const std::uint64_t before = around_.processes.activity();
+  thread.watches_real = true;
+  while (goes_on(thread) && around_.processes.activity() == before) {
+    co_await thread.woken.wait(std::nullopt);
+  }
+  thread.watches_real = false;
+}
+
 Task<void> Program::run(ProgramThread& thread) {
   while (goes_on(thread)) {
     std::optional<ChildRequest> request = next(thread);
+    if (!request && was_asleep(thread)) {
+      co_await wait_for_activity(thread);
+      continue;
+    }
     if (!request) break;
     std::optional<Answer> given;
     try {
@@ -239,6 +274,7 @@ Process::Answer Program::start(const ChildRequest& request) {
 Task<Process::Answer> Program::hello(ProgramThread& thread, ChildRequest request) {
   Process& process = *thread.process;
   process.is_replaced = false;
+  thread.machine = static_cast<pid_t>(request.head.b);
   if (process.machine() < 0 && request.sender > 0) process.set_machine(request.sender);
   return process.answer(thread, std::move(request));
 }

@@ -10,7 +10,9 @@
 // Threads and processes of a host may speak over real descriptors (pipes, Unix-domain sockets): who
 // waits for one looks again whenever another of its program has asked for something, another
 // program says that it did something there, or one has ended. Locks in memory that processes share
-// wake all that wait for such a lock.
+// wake all that wait for such a lock. A thread that waits for the machine itself (a lock of a file,
+// stdio's read of a pipe) is found asleep, and goes on beside others once they have made it ready:
+// there alone the order of two threads is the machine's.
 //
 // A request that is none, or a program that says what it cannot have (kNote), ends all of the
 // program, with a note. At most HostProcesses::kMost threads and processes are on a host; fork()
@@ -73,6 +75,9 @@ class Program {
                             std::unique_ptr<processes::ThreadLink> link);
   std::optional<ChildRequest> next(ProgramThread& thread);
   void reply(ProgramThread& thread, const Answer& answer);
+  // Whether the last next() found it waiting for the machine.
+  bool was_asleep(const ProgramThread& thread) const;
+  Task<void> wait_for_activity(ProgramThread& thread);
   // Until the thread, its process or the program has ended.
   Task<void> run(ProgramThread& thread);
   bool goes_on(const ProgramThread& thread) const;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <sys/types.h>
 
 #include <cstdint>
 #include <memory>
@@ -41,6 +42,7 @@ struct ProgramThread {
   std::int32_t number;
   std::unique_ptr<processes::ThreadLink> link;  // null: of the program's first thread
   WaitPoint woken;
+  pid_t machine = -1;  // what the machine calls it, as it says itself
   std::uint64_t signals_seen = 0;
   std::optional<LockWait> lock_wait{};
   bool watches_real = false;  // in its present wait
