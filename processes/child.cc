@@ -22,11 +22,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <thread>
+#include <mutex>
 #include <utility>
 
 #include "processes/confinement.h"
+#include "processes/lesser_user.h"
+#include "processes/readable.h"
+#include "recording/distrusted_folder.h"
 
 namespace simbench::processes {
 namespace {
@@ -34,6 +36,9 @@ namespace {
 // Its number in the child: programs use the first ones, and some close those that follow.
 constexpr int kLink = 200;
 constexpr int kCannotRun = 127;
+
+// How often a program that computes for long is looked at.
+constexpr std::chrono::milliseconds kSlice{50};
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
@@ -48,11 +53,11 @@ struct Plan {
   const char* program;
   char* const* arguments;
   char* const* environment;
-  const char* folder;
-  const char* log;
+  int folder;
+  int log;
   int link;
   int clock_page;
-  pid_t parent;
+  rlim_t cpu_s;
 };
 
 // Says why in the log, which is its error output by then.
@@ -79,20 +84,27 @@ void forget_parent() {
   syscall(SYS_close_range, 3, ~0U, CLOSE_RANGE_CLOEXEC);
 }
 
-[[noreturn]] void become(const Plan& plan, Confinement& confinement) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != plan.parent) _exit(kCannotRun);
+void set_limits(rlim_t cpu_s) {
+  // The signal at the first may be handled; after these seconds the kernel kills.
+  constexpr rlim_t kAfterwards_s = 5;
+  const rlimit cpu{.rlim_cur = cpu_s, .rlim_max = cpu_s + kAfterwards_s};
+  setrlimit(RLIMIT_CPU, &cpu);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_FSIZE, Child::kMostOutput);
+  limit(RLIMIT_DATA, Child::kMostMemory);
+  limit(RLIMIT_AS, Child::kMostAddresses);
+  limit(RLIMIT_STACK, Child::kMostStack);
+  limit(RLIMIT_NOFILE, Child::kMostDescriptors);
+  limit(RLIMIT_NPROC, Child::kMostProcesses);
+}
+
+[[noreturn]] void become(const Plan& plan, Confinement& confinement, pid_t parent) {
   forget_parent();
   personality(ADDR_NO_RANDOMIZE);
   setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_FSIZE, Child::kMostOutput);
-  limit(RLIMIT_AS, Child::kMostMemory);
-  limit(RLIMIT_NOFILE, Child::kMostDescriptors);
-  if (chdir(plan.folder) != 0) _exit(kCannotRun);
+  if (fchdir(plan.folder) != 0) _exit(kCannotRun);
   const int input = open("/dev/null", O_RDONLY);
-  const int log = open(plan.log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0600);
-  if (input < 0 || log < 0 || dup2(input, 0) < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0) {
+  if (input < 0 || dup2(input, 0) < 0 || dup2(plan.log, 1) < 0 || dup2(plan.log, 2) < 0) {
     _exit(kCannotRun);
   }
   if (dup2(plan.link, kLink) < 0) fail("link", errno);
@@ -100,15 +112,45 @@ void forget_parent() {
   if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
     fail(failure.what, failure.error);
   }
+  if (getppid() != parent) _exit(kCannotRun);  // before its death could be heard of
+  set_limits(plan.cpu_s);
   execve(plan.program, plan.arguments, plan.environment);
   fail(plan.program, errno);
 }
 
+ReadableOf readable_of(const Child::Settings& settings, const std::string& program) {
+  return {.program = program,
+          .words = {settings.command.begin() + 1, settings.command.end()},
+          .environment = settings.environment,
+          .shim = settings.shim,
+          .readable = settings.readable,
+          .served = settings.served};
+}
+
+const std::string& program_of(const Child::Settings& settings) {
+  return settings.program.empty() ? settings.command.front() : settings.program;
+}
+
+// In whole seconds, one at least.
+rlim_t cpu_seconds(std::chrono::milliseconds patience) {
+  const auto whole = std::chrono::ceil<std::chrono::seconds>(patience * Child::kMostCpu);
+  return static_cast<rlim_t>(std::max<std::chrono::seconds::rep>(1, whole.count()));
+}
+
 }  // namespace
+
+std::string why_root(const Child::Settings& settings) {
+  if (!is_root()) return "";
+  std::vector<std::string> needed = needed_paths(readable_of(settings, program_of(settings)));
+  needed.push_back(settings.folder);
+  const std::string obstacle = obstacle_to_nobody(needed);
+  if (obstacle.empty()) return "";
+  return fmt::format("{} runs as root, without root's capabilities, and not as nobody: {}",
+                     std::filesystem::path(settings.command.at(0)).filename().string(), obstacle);
+}
 
 Child::Child(const Settings& settings)
     : name_(std::filesystem::path(settings.command.at(0)).filename()),
-      log_(settings.folder + "/" + settings.log_name),
       patience_(settings.patience),
       link_(settings.link),
       served_(settings.served),
@@ -120,13 +162,27 @@ Child::Child(const Settings& settings)
       obstacle_ = error.what();
     }
   }
-  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience_);
-  const std::chrono::microseconds rest = patience_ - whole_s;
-  const timeval patience{.tv_sec = whole_s.count(), .tv_usec = rest.count()};
+  const auto slice = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::min<std::chrono::milliseconds>(patience_, kSlice));
+  const timeval patience{.tv_sec = 0, .tv_usec = slice.count()};
   setsockopt(link_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
 }
 
+namespace {
+
+// A program takes four, a sweep has many: as many as the system lets this process have.
+void raise_own_descriptors() {
+  rlimit own{};
+  if (getrlimit(RLIMIT_NOFILE, &own) != 0) return;
+  own.rlim_cur = own.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &own);
+}
+
+}  // namespace
+
 std::string Child::start(const Settings& settings) {
+  static std::once_flag raised;
+  std::call_once(raised, raise_own_descriptors);
   std::vector<std::string> arguments = settings.command;
   std::vector<std::string> environment = {
       fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
@@ -136,9 +192,21 @@ std::string Child::start(const Settings& settings) {
   }
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
-  const std::string& program =
-      settings.program.empty() ? settings.command.front() : settings.program;
-  Confinement confinement(settings.folder, program.c_str(), settings.served);
+  const std::string& program = program_of(settings);
+  Confinement confinement({.folder = settings.folder,
+                           .program = program.c_str(),
+                           .readable = readable_paths(readable_of(settings, program)),
+                           .served = settings.served,
+                           .as_nobody = is_root() && why_root(settings).empty()});
+  folder_ = open_folder_in(AT_FDCWD, settings.folder.c_str());
+  log_ = ProgramLog(folder_, settings.log_name);
+  if (log_.descriptor() < 0) {
+    return fmt::format("no {}: {}", settings.log_name, std::strerror(log_.error()));
+  }
+  if (is_root()) {
+    give_to_nobody(folder_);
+    give_to_nobody(log_.descriptor());
+  }
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return fmt::format("no link: {}", std::strerror(errno));
@@ -146,22 +214,25 @@ std::string Child::start(const Settings& settings) {
   const Plan plan{.program = program.c_str(),
                   .arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
-                  .folder = settings.folder.c_str(),
-                  .log = settings.log_name.c_str(),
+                  .folder = folder_,
+                  .log = log_.descriptor(),
                   .link = ends[1],
                   .clock_page = settings.clock_page,
-                  .parent = getpid()};
-  process_ = fork();
-  if (process_ == 0) become(plan, confinement);
-  const int error = errno;
+                  .cpu_s = served_ == Served::kAll ? cpu_seconds(patience_) : RLIM_INFINITY};
+  warden_ = Warden([&](pid_t parent) { become(plan, confinement, parent); });
   close(ends[1]);
   link_ = ends[0];
-  return process_ < 0 ? fmt::format("no process: {}", std::strerror(error)) : "";
+  if (warden_.program() < 0) return fmt::format("no process: {}", std::strerror(warden_.error()));
+  is_started_ = true;
+  use_.emplace(folder_, settings.folder_limits,
+               settings.memory ? settings.memory : std::make_shared<RunMemory>());
+  return "";
 }
 
 Child::~Child() {
   end();
   if (link_ >= 0) close(link_);
+  if (folder_ >= 0) close(folder_);
 }
 
 void Child::follow_thread() {
@@ -170,24 +241,47 @@ void Child::follow_thread() {
   cpu_set_t only;
   CPU_ZERO(&only);
   CPU_SET(cpu, &only);
-  sched_setaffinity(process_, sizeof only, &only);  // without it all goes on, slower
+  sched_setaffinity(warden_.program(), sizeof only, &only);  // without it all goes on, slower
 }
 
-std::optional<ChildRequest> Child::next() {
-  if (!obstacle_.empty()) return std::nullopt;
-  ChildRequest request;
+bool Child::is_within_limits(std::chrono::steady_clock::duration waited) {
+  using Seconds = std::chrono::duration<double>;
+  const std::chrono::milliseconds most = kPatiencesInAll * patience_;
+  if (waited >= patience_) {
+    excess_ = fmt::format("computed for {} s without waiting", Seconds(patience_).count());
+  } else if (served_ == Served::kAll && computed_ + waited > most + asked_ * kShare) {
+    excess_ = fmt::format("computed for {} s in all, beside {} ms for each request",
+                          Seconds(most).count(), kShare.count());
+  } else if (use_ && (waited >= kSlice || asked_ % kLookEvery == 0)) {
+    excess_ = use_->excess(warden_.process());
+  }
+  return excess_.empty();
+}
+
+ssize_t Child::receive(ChildRequest& request) {
   std::array<iovec, 2> pieces{
       {{&request.head, sizeof request.head}, {buffer_.data(), buffer_.size()}}};
   msghdr message{};
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
-  ssize_t size = 0;
-  do {
-    size = recvmsg(link_, &message, 0);
-  } while (size < 0 && errno == EINTR);
-  was_too_slow_ = size < 0 && errno == EAGAIN;
+  const auto begin = std::chrono::steady_clock::now();
+  for (;;) {
+    const ssize_t size = recvmsg(link_, &message, 0);
+    const bool is_early = size < 0 && (errno == EINTR || errno == EAGAIN);
+    const auto waited = std::chrono::steady_clock::now() - begin;
+    asked_ += size > 0 ? 1 : 0;
+    if (!is_within_limits(waited)) return -1;
+    if (is_early) continue;
+    computed_ += waited;
+    return size;
+  }
+}
+
+std::optional<ChildRequest> Child::next() {
+  if (!obstacle_.empty()) return std::nullopt;
+  ChildRequest request;
+  const ssize_t size = receive(request);
   if (size <= 0) return std::nullopt;
-  has_asked_ = true;
   const auto whole = static_cast<std::size_t>(size);
   const std::size_t data_size = whole - std::min(whole, sizeof request.head);
   request.is_whole = whole >= sizeof request.head && request.head.size == data_size;
@@ -210,29 +304,23 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
 std::string Child::ending(const std::string& reason) {
   if (!obstacle_.empty()) return fmt::format("{}: {}", name_, obstacle_);
   const std::string how = end();
-  const std::string said = last_line();
+  const std::string said = log_.last_line();
   return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,
                      said.empty() ? "" : ": " + said);
 }
 
 std::string Child::end() {
-  if (process_ < 0) return "has closed its link";
-  int status = 0;
+  if (!is_started_) return "has closed its link";
   // One that has closed its link is exiting, and has a moment for it.
   pollfd link{.fd = link_, .events = 0, .revents = 0};
-  const int moments = poll(&link, 1, 0) > 0 ? 200 : 0;
-  pid_t ended = waitpid(process_, &status, WNOHANG);
-  for (int i = 0; i < moments && ended == 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    ended = waitpid(process_, &status, WNOHANG);
-  }
-  const bool ended_itself = ended == process_;
-  if (!ended_itself) {
-    kill(process_, SIGKILL);
-    waitpid(process_, &status, 0);
-  }
-  process_ = -1;
-  return how_it_ended(ended_itself, status);
+  const bool is_exiting = poll(&link, 1, 0) > 0;
+  const std::optional<int> status =
+      warden_.status(std::chrono::milliseconds(is_exiting && excess_.empty() ? 1000 : 0));
+  if (excess_.empty() && use_) excess_ = use_->excess(warden_.process());
+  use_.reset();
+  warden_.end();
+  is_started_ = false;
+  return how_it_ended(status);
 }
 
 namespace {
@@ -241,6 +329,8 @@ std::string signal_text(int number) {
   switch (number) {
     case SIGXFSZ:
       return fmt::format("wrote more than {} MiB into a file", Child::kMostOutput >> 20U);
+    case SIGXCPU:
+      return "used the processor for longer than it may";
     case SIGSYS:
       return "made a system call that is not for programs of the simulated world";
     default:
@@ -252,31 +342,13 @@ std::string signal_text(int number) {
 
 }  // namespace
 
-std::string Child::how_it_ended(bool itself, int status) const {
-  if (was_too_slow_) {
-    return fmt::format("computed for {} s without waiting",
-                       std::chrono::duration<double>(patience_).count());
-  }
-  if (!itself) return "was ended";
-  if (WIFSIGNALED(status)) return signal_text(WTERMSIG(status));
-  if (WEXITSTATUS(status) == kCannotRun && !has_asked_) return "cannot be run";
-  return fmt::format("exited with status {}{}", WEXITSTATUS(status),
-                     has_asked_ ? "" : ", and the preloaded library was never loaded");
-}
-
-// The log may be long, and need not have lines.
-std::string Child::last_line() const {
-  constexpr std::streamoff kMost = 400;
-  std::ifstream log(log_, std::ios::binary | std::ios::ate);
-  if (!log) return "";
-  const std::streamoff begin = std::max<std::streamoff>(0, log.tellg() - kMost);
-  log.seekg(begin);
-  std::string line;
-  std::string last;
-  while (std::getline(log, line)) {
-    if (!line.empty()) last = line;
-  }
-  return last;
+std::string Child::how_it_ended(std::optional<int> status) const {
+  if (!excess_.empty()) return excess_;
+  if (!status) return "was ended";
+  if (WIFSIGNALED(*status)) return signal_text(WTERMSIG(*status));
+  if (WEXITSTATUS(*status) == kCannotRun && asked_ == 0) return "cannot be run";
+  return fmt::format("exited with status {}{}", WEXITSTATUS(*status),
+                     asked_ > 0 ? "" : ", and the preloaded library was never loaded");
 }
 
 }  // namespace simbench::processes
