@@ -1,5 +1,6 @@
 #include "processes/lesser_user.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/capability.h>
 #include <sys/stat.h>
@@ -75,6 +76,17 @@ void give_to_nobody(int descriptor) {
   if (fstat(descriptor, &status) != 0) return;
   const mode_t mode = S_ISDIR(status.st_mode) ? 0770 : 0660;
   if (fchown(descriptor, kNobody, 0) == 0) fchmod(descriptor, mode);
+}
+
+void give_to_nobody(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return;
+  give_to_nobody(file);
+  close(file);
+}
+
+void let_pass(const std::string& folder) {
+  if (is_root()) chmod(folder.c_str(), 0711);
 }
 
 // By the calls themselves: the library's would change all threads.

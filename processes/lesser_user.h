@@ -26,6 +26,10 @@ std::string obstacle_to_nobody(const std::vector<std::string>& paths);
 
 // As root: the file or folder is nobody's from now on, and root's too where it has no capabilities.
 void give_to_nobody(int descriptor);
+void give_to_nobody(const std::string& path);  // no link
+
+// As root: everybody may go through the folder, and see no more of it.
+void let_pass(const std::string& folder);
 
 // In a new process, for good; makes async-signal-safe calls only. Returns false with errno.
 bool become_nobody();

@@ -9,6 +9,9 @@
 #include <string_view>
 #include <utility>
 
+#include "processes/lesser_user.h"
+#include "recording/distrusted_folder.h"
+
 namespace simbench::processes {
 namespace {
 
@@ -56,10 +59,12 @@ std::map<std::string, std::string> fill(std::map<std::string, std::string> envir
 
 std::string make_folder(const std::filesystem::path& folder,
                         const scenarios::HostPrograms& programs, const HostPlaces& places) {
-  std::filesystem::remove_all(folder);
+  remove_tree(folder);
   std::filesystem::create_directories(folder);
   for (const auto& [name, content] : programs.files) {
-    if (!lacks_drift(content, places)) std::ofstream(folder / name) << fill(content, places);
+    if (lacks_drift(content, places)) continue;
+    std::ofstream(folder / name) << fill(content, places);
+    if (is_root()) give_to_nobody(folder / name);
   }
   return folder.string();
 }
@@ -87,6 +92,7 @@ std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& pr
     }
   }
   for (const auto& [name, content] : programs.files) look(content);
+  for (const std::string& path : programs.readable) look(path);
   for (const auto& [name, value] : programs.environment) look(value);
   return found;
 }

@@ -352,7 +352,8 @@ void check_values(const Scenario& scenario, const nlohmann::json& document) {
       });
 }
 
-// A plain name in a host's folder, and a variable that leaves the loader alone.
+// A plain name in a host's folder, a variable that leaves the loader alone, paths that do not
+// depend on where simbench runs.
 void check_programs(const Scenario& scenario, const std::string& pointer,
                     const HostPrograms& programs) {
   for (const auto& [name, content] : programs.files) {
@@ -371,6 +372,12 @@ void check_programs(const Scenario& scenario, const std::string& pointer,
                           "LD_ or SIMBENCH_",
                           shown_text(name)));
     }
+  }
+  for (std::size_t i = 0; i < programs.readable.size(); ++i) {
+    if (programs.readable[i].starts_with('/')) continue;
+    fail_at(
+        scenario, fmt::format("{}/readable/{}", pointer, i),
+        fmt::format("found \"{}\", allowed: an absolute path", shown_text(programs.readable[i])));
   }
 }
 

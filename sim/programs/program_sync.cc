@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
+#include "processes/lesser_user.h"
 #include "processes/placeholders.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/process.h"
@@ -33,8 +34,9 @@ class RunningPrograms {
   RunningPrograms(SimHost& host, std::size_t hosts)
       : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
 
-  void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder) {
+  // Returns what is to be said of it.
+  std::string start(const HostPrograms::Command& command, const ProgramSettings& settings,
+                    const std::string& folder, std::shared_ptr<processes::RunMemory> memory) {
     const std::size_t number = processes_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -44,10 +46,13 @@ class RunningPrograms {
         .environment = fill(settings.programs.environment, places),
         .folder = folder,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
-        .shim = settings.shim};
+        .shim = settings.shim,
+        .readable = fill(settings.programs.readable, places),
+        .memory = std::move(memory)};
     if (settings.patience) child.patience = *settings.patience;
     processes_.emplace_back(host_, network_, kernel_, card_, child,
                             static_cast<std::uint32_t>(number));
+    return processes::why_root(child);
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -105,7 +110,7 @@ std::optional<Nanoseconds> ProgramSync::warm_up() const {
 }
 
 std::vector<std::string> ProgramSync::notes() const {
-  std::vector<std::string> notes;
+  std::vector<std::string> notes(remarks_.begin(), remarks_.end());
   for (const auto& [ending, hosts] : endings_) {
     notes.push_back(fmt::format("{} {}: {}", hosts.size() == 1 ? "host" : "hosts",
                                 fmt::join(hosts, ", "), ending));
@@ -117,6 +122,7 @@ std::string ProgramSync::make_folder(SimHost& host) {
   std::filesystem::path folder;
   if (settings_.log_folder.empty()) {
     if (temporary_ == nullptr) temporary_ = std::make_unique<TemporaryFolder>();
+    processes::let_pass(temporary_->path());
     folder = temporary_->path();
   } else {
     folder = std::filesystem::absolute(settings_.log_folder) / settings_.pipeline /
@@ -139,7 +145,8 @@ Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> comma
   RunningPrograms programs(own, settings_.hosts);
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder);
+    const std::string remark = programs.start(command, settings_, folder, memory_);
+    if (!remark.empty()) remarks_.insert(remark);
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
