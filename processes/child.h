@@ -85,7 +85,7 @@ class Child {
   static constexpr std::size_t kMostStack = std::size_t{8} << 20;
   static constexpr std::size_t kMostDescriptors = 1024;
   static constexpr std::size_t kMostProcesses = 4096;
-  static constexpr std::uint64_t kLookEvery = 512;
+  static constexpr std::uint64_t kLookEvery = 4096;
 
   struct Settings {
     std::vector<std::string> command{};  // as the program sees it

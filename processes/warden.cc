@@ -97,8 +97,9 @@ void leave_parent(int messages) {
   sigaddset(&awaited, SIGTERM);
   signal(SIGCHLD, SIG_DFL);
   sigset_t all;
+  sigset_t before;
   sigfillset(&all);
-  sigprocmask(SIG_SETMASK, &all, nullptr);
+  sigprocmask(SIG_SETMASK, &all, &before);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -107,6 +108,7 @@ void leave_parent(int messages) {
   const pid_t own = getpid();
   const pid_t program = fork();
   if (program == 0) {
+    sigprocmask(SIG_SETMASK, &before, nullptr);
     become(own);
     _exit(1);
   }

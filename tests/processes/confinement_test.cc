@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -130,6 +131,54 @@ TEST_F(ConfinementTest, ItWritesInItsFolderOnly) {
             "move: succeeded\n"
             "still there\n");
   EXPECT_THAT(other.names(), testing::IsEmpty());
+}
+
+// Everybody may read and write it, so that nothing but the rules is in the way.
+TEST_F(ConfinementTest, ItReadsWhatIsNamed) {
+  if (!has_landlock()) GTEST_SKIP() << "this kernel has no Landlock";
+  const ScratchFolder other;
+  const std::string file = other.write("sub/file", "text");
+  for (const std::string& path : {other.path().string(), other / "sub", file}) {
+    chmod(path.c_str(), 0777);
+  }
+  const auto output = [&](std::vector<std::string> readable) {
+    Child::Settings own = settings({"read", file});
+    own.command.pop_back();  // a word that names a file may be read
+    own.environment = {{"FILE", file}};
+    own.readable = std::move(readable);
+    note_of(own);
+    return folder_.content("program0.log");
+  };
+  const std::string can_read = "read: succeeded\nwrite: EACCES\nstill there\n";
+  EXPECT_EQ(output({}), "read: EACCES\nwrite: EACCES\nstill there\n");
+  EXPECT_EQ(output({file}), can_read);
+  EXPECT_EQ(output({other / "sub"}), can_read);
+  EXPECT_EQ(output({other.path().string()}), can_read);
+  EXPECT_EQ(output({"/nowhere", other / "sub/missing"}),
+            "read: EACCES\nwrite: EACCES\nstill there\n");
+  note_of(settings({"read", file}));
+  EXPECT_EQ(folder_.content("program0.log"), "read: succeeded\nwrite: EACCES\nstill there\n");
+}
+
+// Its program lies where nobody may go: it is root then, without root's rights.
+TEST_F(ConfinementTest, RootsProgramsAreNobodys) {
+  if (geteuid() != 0) GTEST_SKIP() << "for root";
+  EXPECT_EQ(why_root(settings({"user"})), "");
+  EXPECT_THAT(output_of({"user"}), StartsWith("Uid:\t65534\t65534\t65534\t65534\n"
+                                              "Gid:\t65534\t65534\t65534\t65534\n"
+                                              "Groups:\t \n"));
+  const ScratchFolder closed;
+  Child::Settings own = settings({"user"});
+  own.program = closed / "program";
+  std::filesystem::copy(own.command.front(), own.program);
+  EXPECT_EQ(why_root(own),
+            "simbench_escapes runs as root, without root's capabilities, and not as "
+            "nobody: nobody may not enter or read " +
+                closed.path().string());
+  EXPECT_EQ(note_of(own), "simbench_escapes: exited with status 0: still there");
+  EXPECT_THAT(folder_.content("program0.log"),
+              testing::AllOf(StartsWith("Uid:\t0\t0\t0\t0\nGid:\t0\t0\t0\t0\n"),
+                             HasSubstr("CapEff:\t0000000000000000\nCapBnd:\t0000000000000000\n")));
 }
 
 TEST_F(ConfinementTest, ItHasNoNeighbours) {
