@@ -39,9 +39,9 @@ bool may_change_user() {
 
 // What stands between the path and everybody.
 std::string obstacle_on(const fs::path& path) {
-  std::error_code missing;
-  const fs::path whole = fs::canonical(path, missing);
-  if (missing) return "";
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path), error);
+  if (error || path.empty()) return "";
   fs::path part;
   for (const fs::path& each : whole) {
     part /= each;

@@ -34,9 +34,8 @@ class RunningPrograms {
   RunningPrograms(SimHost& host, std::size_t hosts)
       : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
 
-  // Returns what is to be said of it.
-  std::string start(const HostPrograms::Command& command, const ProgramSettings& settings,
-                    const std::string& folder, std::shared_ptr<processes::RunMemory> memory) {
+  void start(const HostPrograms::Command& command, const ProgramSettings& settings,
+             const std::string& folder, std::shared_ptr<processes::RunMemory> memory) {
     const std::size_t number = processes_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -52,7 +51,6 @@ class RunningPrograms {
     if (settings.patience) child.patience = *settings.patience;
     processes_.emplace_back(host_, network_, kernel_, card_, child,
                             static_cast<std::uint32_t>(number));
-    return processes::why_root(child);
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -110,7 +108,7 @@ std::optional<Nanoseconds> ProgramSync::warm_up() const {
 }
 
 std::vector<std::string> ProgramSync::notes() const {
-  std::vector<std::string> notes(remarks_.begin(), remarks_.end());
+  std::vector<std::string> notes;
   for (const auto& [ending, hosts] : endings_) {
     notes.push_back(fmt::format("{} {}: {}", hosts.size() == 1 ? "host" : "hosts",
                                 fmt::join(hosts, ", "), ending));
@@ -145,8 +143,7 @@ Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> comma
   RunningPrograms programs(own, settings_.hosts);
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
-    const std::string remark = programs.start(command, settings_, folder, memory_);
-    if (!remark.empty()) remarks_.insert(remark);
+    programs.start(command, settings_, folder, memory_);
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
