@@ -19,7 +19,7 @@
 
 namespace simbench::processes {
 
-// Of all programs of a run; for one thread.
+// What all programs of a run have; for one thread.
 struct RunMemory {
   // Some 400 Python programs, or 1000 daemons.
   std::uint64_t limit = std::uint64_t{4} << 30;

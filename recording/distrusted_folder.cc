@@ -13,7 +13,7 @@ namespace simbench {
 namespace {
 
 // Folders below it are moved up before they are emptied.
-constexpr int kDeepest = 32;
+constexpr int kDeepestInPlace = 32;
 
 class TreeRemover {
  public:
@@ -40,7 +40,7 @@ class TreeRemover {
     if (unlinkat(folder, name, 0) == 0) return true;
     const int child = open_folder_in(folder, name);
     if (child < 0) return false;
-    if (depth >= kDeepest && move_up(folder, name)) {
+    if (depth >= kDeepestInPlace && move_up(folder, name)) {
       close(child);
       return true;
     }
