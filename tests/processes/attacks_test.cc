@@ -1,21 +1,15 @@
-// Attacks by name, and what becomes of each. Whatever that is: the machine is as it was, nothing is
-// left running, simbench has not waited for longer than its patience, and the folder can be
-// removed.
-#include <fmt/format.h>
+// Attacks by name, and what becomes of each (tests/processes/attack_case.h). Those that take their
+// time are in attacks_slow_test.cc.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <linux/landlock.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
-#include <cctype>
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "processes/lesser_user.h"
-#include "recording/distrusted_folder.h"
-#include "tests/processes/attacked_machine.h"
+#include "tests/processes/attack_case.h"
 
 namespace simbench::processes {
 namespace {
@@ -28,44 +22,9 @@ using testing::Matcher;
 using testing::Not;
 using testing::StartsWith;
 
-struct AttackCase {
-  Attack attack;
-  Matcher<std::string> output = _;
-  Matcher<std::string> ending = _;
-};
-
-std::string name_of(const Attack& attack) {
-  std::string name = attack.program;
-  for (const std::string& word : attack.words) name += "_" + word;
-  return name;
-}
-
-void PrintTo(const AttackCase& each, std::ostream* out) { *out << name_of(each.attack); }
-
-Matcher<std::string> lines(const std::vector<std::string>& expected) {
-  std::string text;
-  for (const std::string& line : expected) text += line + "\n";
-  return testing::Eq(text + "still there\n");
-}
-Matcher<std::string> ends(const std::string& how) { return HasSubstr(": " + how); }
-
 class AttackTest : public testing::TestWithParam<AttackCase> {};
 
-TEST_P(AttackTest, IsRepelled) {
-  if (syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) < 6) {
-    GTEST_SKIP() << "this kernel's Landlock does not know signals and abstract sockets";
-  }
-  const AttackCase& each = GetParam();
-  const AttackedMachine machine;
-  const Attacked result = machine.run(each.attack);
-  EXPECT_THAT(result.output, each.output) << result.ending;
-  EXPECT_THAT(result.ending, each.ending);
-  EXPECT_EQ(machine.change(), "");
-  constexpr double kMoment_s = 5;  // of a busy machine
-  const double patience_s = std::chrono::duration<double>(each.attack.patience).count();
-  EXPECT_LT(result.took_s, Child::kPatiencesInAll * patience_s + kMoment_s);
-  EXPECT_TRUE(remove_tree(machine.folder().path()));
-}
+TEST_P(AttackTest, IsRepelled) { expect_repelled(GetParam()); }
 
 std::vector<AttackCase> attacks_on_files() {
   const auto at = [](const char* attempt) {
@@ -172,27 +131,8 @@ std::vector<AttackCase> attacks_on_processes() {
       {at("deep_stack"), _, ends("was ended by signal SEGV")},
       {at("pipes", 5s), lines({"pipe: EMFILE"})},
       {at("sent_descriptors"), lines({"few"})},
-      {at("wait_for_ever"), _, ends("computed for 1 s without waiting")},
-      {at("stop_itself"), _, ends("computed for 1 s without waiting")},
-      {at("ignore_all"), _, ends("computed for 1 s without waiting")},
-      {at("compute_in_pieces", 500ms), _,
-       ends("computed for 5 s in all, beside 10 ms for each request")},
-      {at("use_processor", 20s), _, ends("used the processor for longer than it may")},
-      {at("leave_world"), _, AnyOf(ends("was ended"), ends("computed for"))},
-      {at("new_session"), _, ends("computed for")},
       {at("crash_hard"), _, ends("was ended by signal SEGV")},
   };
-}
-
-std::vector<AttackCase> attacks_on_memory() {
-  const auto at = [](const char* attempt) {
-    return Attack{.program = "process_attacks",
-                  .words = {attempt},
-                  .patience = 20s,
-                  .memory = std::uint64_t{200} << 20};
-  };
-  const auto much = ends("used more than 200 MiB of memory, with the run's other programs");
-  return {{at("private_memory"), _, much}, {at("shared_memory"), _, much}};
 }
 
 std::vector<AttackCase> attacks_on_the_machine() {
@@ -254,19 +194,14 @@ std::vector<AttackCase> attacks_by_other_ways() {
   return all;
 }
 
-std::string test_name(const testing::TestParamInfo<AttackCase>& info) {
-  return name_of(info.param.attack);
-}
-
-INSTANTIATE_TEST_SUITE_P(Files, AttackTest, testing::ValuesIn(attacks_on_files()), test_name);
-INSTANTIATE_TEST_SUITE_P(Disk, AttackTest, testing::ValuesIn(attacks_on_the_disk()), test_name);
+INSTANTIATE_TEST_SUITE_P(Files, AttackTest, testing::ValuesIn(attacks_on_files()), attack_name);
+INSTANTIATE_TEST_SUITE_P(Disk, AttackTest, testing::ValuesIn(attacks_on_the_disk()), attack_name);
 INSTANTIATE_TEST_SUITE_P(Processes, AttackTest, testing::ValuesIn(attacks_on_processes()),
-                         test_name);
-INSTANTIATE_TEST_SUITE_P(Memory, AttackTest, testing::ValuesIn(attacks_on_memory()), test_name);
+                         attack_name);
 INSTANTIATE_TEST_SUITE_P(Machine, AttackTest, testing::ValuesIn(attacks_on_the_machine()),
-                         test_name);
+                         attack_name);
 INSTANTIATE_TEST_SUITE_P(OtherWays, AttackTest, testing::ValuesIn(attacks_by_other_ways()),
-                         test_name);
+                         attack_name);
 
 }  // namespace
 }  // namespace simbench::processes
