@@ -39,9 +39,10 @@ bool may_change_user() {
 
 // What stands between the path and everybody.
 std::string obstacle_on(const fs::path& path) {
+  if (path.empty()) return "";
   std::error_code error;
-  const fs::path whole = fs::weakly_canonical(fs::absolute(path), error);
-  if (error || path.empty()) return "";
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error) return "";
   fs::path part;
   for (const fs::path& each : whole) {
     part /= each;

@@ -84,6 +84,7 @@ void kill_all(pid_t program) {
 
 // Nothing of the parent's stays open.
 void leave_parent(int messages) {
+  if (chdir("/") != 0) _exit(1);
   const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
   for (int each = 0; each < kMessages; ++each) dup2(null, each);
   if (messages != kMessages) dup2(messages, kMessages);
