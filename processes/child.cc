@@ -57,6 +57,7 @@ struct Plan {
   int log;
   int link;
   int clock_page;
+  int group;  // the entrance to the run's control group; -1: none
   rlim_t cpu_s;
 };
 
@@ -99,6 +100,8 @@ void set_limits(rlim_t cpu_s) {
 }
 
 [[noreturn]] void become(const Plan& plan, Confinement& confinement, pid_t parent) {
+  // Where that is not allowed the other limits remain.
+  if (const ssize_t entered = write(plan.group, "0", 1); entered < 0) errno = 0;
   forget_parent();
   personality(ADDR_NO_RANDOMIZE);
   setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
@@ -211,6 +214,7 @@ std::string Child::start(const Settings& settings) {
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return fmt::format("no link: {}", std::strerror(errno));
   }
+  const std::shared_ptr<RunUse> run = settings.run ? settings.run : std::make_shared<RunUse>();
   const Plan plan{.program = program.c_str(),
                   .arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
@@ -218,14 +222,14 @@ std::string Child::start(const Settings& settings) {
                   .log = log_.descriptor(),
                   .link = ends[1],
                   .clock_page = settings.clock_page,
+                  .group = run->group().entrance(),
                   .cpu_s = served_ == Served::kAll ? cpu_seconds(patience_) : RLIM_INFINITY};
   warden_ = Warden([&](pid_t parent) { become(plan, confinement, parent); });
   close(ends[1]);
   link_ = ends[0];
   if (warden_.program() < 0) return fmt::format("no process: {}", std::strerror(warden_.error()));
   is_started_ = true;
-  use_.emplace(folder_, settings.folder_limits,
-               settings.memory ? settings.memory : std::make_shared<RunMemory>());
+  use_.emplace(folder_, settings.folder_limits, run);
   return "";
 }
 
@@ -317,6 +321,8 @@ std::string Child::end() {
   const std::optional<int> status =
       warden_.status(std::chrono::milliseconds(is_exiting && excess_.empty() ? 1000 : 0));
   if (excess_.empty() && use_) excess_ = use_->excess(warden_.process());
+  const bool is_killed = status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGKILL;
+  if (excess_.empty() && is_killed && use_) excess_ = use_->excess_of_killed();
   use_.reset();
   warden_.end();
   is_started_ = false;

@@ -21,7 +21,7 @@
 //
 //   time     `patience` of real time for a request; in all kPatiencesInAll times that, beside
 //            kShare a request; of the processor, kMostCpu patiences
-//   memory   kMostMemory bytes of its own data, and RunMemory of the run's programs together
+//   memory   kMostMemory bytes of its own data, and RunUse of the run's programs together
 //            (processes/program_use.h)
 //   disk     kMostOutput bytes a file, FolderLimits of its folder together with the files that it
 //            holds open and that have no name (processes/folder_use.h)
@@ -97,7 +97,7 @@ class Child {
     std::vector<std::string> readable{};  // files and folders, absolute, beside the usual
     std::chrono::milliseconds patience = kPatience;
     FolderLimits folder_limits{};
-    std::shared_ptr<RunMemory> memory{};  // empty: its own
+    std::shared_ptr<RunUse> run{};  // what its run's programs use; empty: it is alone
     Served served = Served::kAll;
     int clock_page = -1;  // kClock: the descriptor of its memory (shim/clock_page.h)
     int link = -1;        // the other end of somebody else's link: nothing is started

@@ -9,10 +9,20 @@
 
 namespace simbench::processes {
 
-ProgramUse::ProgramUse(int folder, const FolderLimits& limits, std::shared_ptr<RunMemory> memory)
-    : folder_(folder), limits_(limits), memory_(std::move(memory)) {}
+const ControlGroup& RunUse::group() {
+  if (!group_) group_.emplace(ControlGroup::Limits{most_memory_, kMostProcesses});
+  return *group_;
+}
 
-ProgramUse::~ProgramUse() { memory_->used -= counted_; }
+std::string RunUse::memory_excess() const {
+  return fmt::format("used more than {} MiB of memory, with the run's other programs",
+                     most_memory_ >> 20U);
+}
+
+ProgramUse::ProgramUse(int folder, const FolderLimits& limits, std::shared_ptr<RunUse> run)
+    : folder_(folder), limits_(limits), run_(std::move(run)) {}
+
+ProgramUse::~ProgramUse() { run_->change_memory(counted_, 0); }
 
 std::string ProgramUse::excess(pid_t ancestor) {
   FolderUse disk = folder_use(folder_, limits_);
@@ -21,11 +31,14 @@ std::string ProgramUse::excess(pid_t ancestor) {
     add_unlinked_files(each, disk);
     memory += resident_bytes(each);
   }
-  memory_->used += memory - std::exchange(counted_, memory);
+  run_->change_memory(counted_, memory);
+  counted_ = memory;
   if (std::string excess = excess_of(disk, limits_); !excess.empty()) return excess;
-  if (memory_->used <= memory_->limit) return "";
-  return fmt::format("used more than {} MiB of memory, with the run's other programs",
-                     memory_->limit >> 20U);
+  return run_->memory() > run_->most_memory() ? run_->memory_excess() : "";
+}
+
+std::string ProgramUse::excess_of_killed() const {
+  return run_->group().has_run_out() ? run_->memory_excess() : "";
 }
 
 }  // namespace simbench::processes

@@ -35,7 +35,7 @@ class RunningPrograms {
       : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
 
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder, std::shared_ptr<processes::RunMemory> memory) {
+             const std::string& folder, std::shared_ptr<processes::RunUse> run) {
     const std::size_t number = processes_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -47,7 +47,7 @@ class RunningPrograms {
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim,
         .readable = fill(settings.programs.readable, places),
-        .memory = std::move(memory)};
+        .run = std::move(run)};
     if (settings.patience) child.patience = *settings.patience;
     processes_.emplace_back(host_, network_, kernel_, card_, child,
                             static_cast<std::uint32_t>(number));
@@ -143,7 +143,7 @@ Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> comma
   RunningPrograms programs(own, settings_.hosts);
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder, memory_);
+    programs.start(command, settings_, folder, run_);
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();

@@ -68,7 +68,7 @@ class ProgramSync final : public HostSync {
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
-  std::shared_ptr<processes::RunMemory> memory_ = std::make_shared<processes::RunMemory>();
+  std::shared_ptr<processes::RunUse> run_ = std::make_shared<processes::RunUse>();
   std::set<std::string> remarks_;                    // on how programs run
   std::map<std::string, std::set<PeerId>> endings_;  // the hosts whose programs ended so
 };

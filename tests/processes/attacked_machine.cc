@@ -102,8 +102,6 @@ Child::Settings AttackedMachine::settings(const Attack& attack) const {
                                       attack.program};
   command.insert(command.end(), attack.words.begin(), attack.words.end());
   command.push_back(canary());
-  auto memory = std::make_shared<RunMemory>();
-  memory->limit = attack.memory;
   return {.command = std::move(command),
           .folder = folder_.path().string(),
           .log_name = "program0.log",
@@ -111,7 +109,7 @@ Child::Settings AttackedMachine::settings(const Attack& attack) const {
           .readable = attack.readable,
           .patience = attack.patience,
           .folder_limits = attack.disk,
-          .memory = std::move(memory)};
+          .run = std::make_shared<RunUse>(attack.memory)};
 }
 
 Attacked AttackedMachine::run(const Attack& attack) const {

@@ -22,7 +22,7 @@ struct Attack {
   std::vector<std::string> words{};
   std::chrono::milliseconds patience = std::chrono::seconds(5);
   FolderLimits disk{};
-  std::uint64_t memory = RunMemory{}.limit;
+  std::uint64_t memory = RunUse::kMostMemory;
   std::vector<std::string> readable{};
 };
 

@@ -111,21 +111,19 @@ class LargeProcess {
 };
 
 TEST_F(FolderUseTest, MemoryIsThatOfTheRunsProgramsTogether) {
-  const LargeProcess one(60 * kMebibyte);
-  const LargeProcess two(60 * kMebibyte);
-  auto memory = std::make_shared<RunMemory>();
-  // What a copy of this process has beside.
+  // What a copy of this process has beside is no more than this.
   const std::uint64_t own = resident_bytes(getpid());
-  memory->limit = 100 * kMebibyte + 2 * own;
-  ProgramUse first(folder_, {}, memory);
+  const std::uint64_t each = 60 * kMebibyte + own;
+  const LargeProcess one(each);
+  const LargeProcess two(each);
+  auto run = std::make_shared<RunUse>(each + own + 30 * kMebibyte);
+  ProgramUse first(folder_, {}, run);
   EXPECT_EQ(first.excess(one.parent()), "");
   EXPECT_EQ(first.excess(one.parent()), "") << "it is not counted twice";
-  EXPECT_THAT(memory->used, testing::AllOf(Ge(60 * kMebibyte), Le(60 * kMebibyte + own)));
-  memory->limit = 100 * kMebibyte;
+  EXPECT_THAT(run->memory(), testing::AllOf(Ge(each), Le(each + own)));
   {
-    ProgramUse second(folder_, {}, memory);
-    EXPECT_EQ(second.excess(two.parent()),
-              "used more than 100 MiB of memory, with the run's other programs");
+    ProgramUse second(folder_, {}, run);
+    EXPECT_EQ(second.excess(two.parent()), run->memory_excess());
   }
   EXPECT_EQ(first.excess(one.parent()), "") << "the other has ended";
 }
