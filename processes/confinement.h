@@ -27,7 +27,7 @@
 //
 //   const char* program = "/usr/sbin/chronyd";
 //   char* const none[] = {nullptr};
-//   Confinement confinement({.folder = folder, .program = program, .readable = {"/usr"}});
+//   Confinement confinement({.folder = "/tmp/host0", .program = program, .readable = {"/usr"}});
 //   if (fork() == 0) {
 //     const Confinement::Failure failure = confinement.apply();
 //     if (failure.what == nullptr) execve(program, none, none);

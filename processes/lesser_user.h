@@ -6,7 +6,7 @@
 // numbers). It is then root without any of root's capabilities.
 //
 //   const std::string obstacle = obstacle_to_nobody({"/usr/sbin/chronyd", "/tmp/simbench/host0"});
-//   if (obstacle.empty()) give_to_nobody(folder);
+//   if (obstacle.empty()) give_to_nobody("/tmp/simbench/host0");
 #pragma once
 
 #include <sys/types.h>

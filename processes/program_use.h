@@ -6,7 +6,7 @@
 // Where there is a control group (processes/control_group.h), the kernel counts too.
 //
 //   auto run = std::make_shared<RunUse>();
-//   ProgramUse use(folder, {}, run);
+//   ProgramUse use(open_folder_in(AT_FDCWD, "/tmp/simbench/host0"), {}, run);
 //   print(use.excess(4711));  // "made more than 4096 files"
 #pragma once
 

@@ -37,20 +37,11 @@ struct ReadableOf {
   Served served = Served::kAll;
 };
 
-inline constexpr const char* kSystemFiles[] = {"/etc/ca-certificates.crt",
-                                               "/etc/group",
-                                               "/etc/host.conf",
-                                               "/etc/ld.so.cache",
-                                               "/etc/ld.so.preload",
-                                               "/etc/localtime",
-                                               "/etc/networks",
-                                               "/etc/nsswitch.conf",
-                                               "/etc/passwd",
-                                               "/etc/protocols",
-                                               "/etc/services",
-                                               "/etc/ssl/certs",
-                                               "/etc/ssl/openssl.cnf",
-                                               "/etc/timezone"};
+inline constexpr const char* kSystemFiles[] = {
+    "/etc/group",     "/etc/host.conf", "/etc/ld.so.cache",   "/etc/ld.so.preload",
+    "/etc/localtime", "/etc/networks",  "/etc/nsswitch.conf", "/etc/passwd",
+    "/etc/protocols", "/etc/services",  "/etc/ssl/certs",     "/etc/ssl/openssl.cnf",
+    "/etc/timezone"};
 
 // Absolute; some may not be there.
 std::vector<std::string> readable_paths(const ReadableOf& of);
