@@ -19,7 +19,9 @@ std::string name_of(const Attack& attack) {
 
 }  // namespace
 
-void PrintTo(const AttackCase& each, std::ostream* out) { *out << name_of(each.attack); }
+std::ostream& operator<<(std::ostream& out, const AttackCase& each) {
+  return out << name_of(each.attack);
+}
 
 std::string attack_name(const testing::TestParamInfo<AttackCase>& info) {
   return name_of(info.param.attack);

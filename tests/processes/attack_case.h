@@ -22,7 +22,7 @@ struct AttackCase {
   testing::Matcher<std::string> ending = testing::_;
 };
 
-void PrintTo(const AttackCase& each, std::ostream* out);
+std::ostream& operator<<(std::ostream& out, const AttackCase& each);
 std::string attack_name(const testing::TestParamInfo<AttackCase>& info);
 
 // What it printed, and that it came to its end.

@@ -28,7 +28,7 @@ constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 class FolderUseTest : public testing::Test {
  protected:
   FolderUseTest() : folder_(open_folder_in(AT_FDCWD, scratch_.path().c_str())) {}
-  ~FolderUseTest() override { close(folder_); }
+  void TearDown() override { close(folder_); }
   FolderUse use(const FolderLimits& limits = {}) const { return folder_use(folder_, limits); }
 
   const ScratchFolder scratch_;
