@@ -224,7 +224,10 @@ std::string Child::start(const Settings& settings) {
                   .clock_page = settings.clock_page,
                   .group = run->group().entrance(),
                   .cpu_s = served_ == Served::kAll ? cpu_seconds(patience_) : RLIM_INFINITY};
-  warden_ = Warden([&](pid_t parent) { become(plan, confinement, parent); });
+  const std::filesystem::path& group = run->group().path();
+  // The last of the run's wardens finds it empty.
+  warden_ = Warden([&](pid_t parent) { become(plan, confinement, parent); },
+                   [&group] { rmdir(group.c_str()); });
   close(ends[1]);
   link_ = ends[0];
   if (warden_.program() < 0) return fmt::format("no process: {}", std::strerror(warden_.error()));

@@ -65,7 +65,8 @@ void kill_all(pid_t program) {
   }
 }
 
-[[noreturn]] void watch(pid_t program, const sigset_t& awaited) {
+// Returns once it has killed all.
+void watch(pid_t program, const sigset_t& awaited) {
   for (;;) {
     int status = 0;
     pid_t ended = 0;
@@ -77,7 +78,7 @@ void kill_all(pid_t program) {
     if (ended < 0) _exit(0);
     if (sigwaitinfo(&awaited, nullptr) == SIGTERM) {
       kill_all(program);
-      _exit(0);
+      return;
     }
   }
 }
@@ -91,7 +92,8 @@ void leave_parent(int messages) {
   syscall(SYS_close_range, kMessages + 1, ~0U, 0);
 }
 
-[[noreturn]] void guard(pid_t parent, int messages, const std::function<void(pid_t)>& become) {
+[[noreturn]] void guard(pid_t parent, int messages, const std::function<void(pid_t)>& become,
+                        const std::function<void()>& orphaned) {
   sigset_t awaited;
   sigemptyset(&awaited);
   sigaddset(&awaited, SIGCHLD);
@@ -122,6 +124,8 @@ void leave_parent(int messages) {
   hold_own_process_files(program);
   tell(program);
   watch(program, awaited);
+  if (getppid() != parent && orphaned) orphaned();
+  _exit(0);
 }
 
 // A message of the warden's; nothing if it ended without one.
@@ -137,7 +141,7 @@ std::optional<int> message(int messages) {
 
 }  // namespace
 
-Warden::Warden(const std::function<void(pid_t)>& become) {
+Warden::Warden(const std::function<void(pid_t)>& become, const std::function<void()>& orphaned) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     error_ = errno;
@@ -145,7 +149,7 @@ Warden::Warden(const std::function<void(pid_t)>& become) {
   }
   const pid_t own = getpid();
   process_ = fork();
-  if (process_ == 0) guard(own, ends[1], become);
+  if (process_ == 0) guard(own, ends[1], become, orphaned);
   error_ = process_ < 0 ? errno : 0;
   close(ends[1]);
   messages_ = ends[0];

@@ -28,9 +28,11 @@ class Warden {
  public:
   // None.
   Warden() = default;
-  // `become` runs in the program's process, which gets its parent's number; it must not return, and
+  // `become` runs in the program's process, which gets its parent's number, and must not return.
+  // `orphaned` runs in the warden's when it has killed all because its own parent has ended. Both
   // may make async-signal-safe calls only.
-  explicit Warden(const std::function<void(pid_t parent)>& become);
+  explicit Warden(const std::function<void(pid_t parent)>& become,
+                  const std::function<void()>& orphaned = {});
   ~Warden();
   Warden(const Warden&) = delete;
   Warden& operator=(const Warden&) = delete;

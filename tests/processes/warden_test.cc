@@ -137,10 +137,13 @@ TEST(Warden, ATreeEnds) {
 
 TEST(Warden, NothingIsLeftOfWhoIsKilled) {
   const SharedNumber background;
+  const SharedNumber orphaned;
+  Warden([](pid_t) { stay(); }, [&] { *orphaned = 7; });
+  EXPECT_EQ(*orphaned, 0) << "its parent has ended it";
   const pid_t owner = fork();
   ASSERT_GE(owner, 0);
   if (owner == 0) {
-    const Warden warden([&](pid_t) { go_to_background(background); });
+    const Warden warden([&](pid_t) { go_to_background(background); }, [&] { *orphaned = 8; });
     stay();
   }
   const pid_t process = background.get();
@@ -148,6 +151,7 @@ TEST(Warden, NothingIsLeftOfWhoIsKilled) {
   kill(owner, SIGKILL);
   waitpid(owner, nullptr, 0);
   EXPECT_TRUE(comes_to_be_gone(process));
+  EXPECT_EQ(orphaned.get(), 8);
 }
 
 TEST(Warden, IsMoved) {
