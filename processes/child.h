@@ -80,7 +80,8 @@ class Child {
   static constexpr int kMostCpu = 120;
   static constexpr std::size_t kMostOutput = std::size_t{64} << 20;
   static constexpr std::size_t kMostMemory = std::size_t{1} << 30;
-  // What is only set aside costs nothing; node sets aside some 20 GiB.
+  // What is only set aside costs nothing; node does so with 10 GiB for each
+  // memory of WebAssembly.
   static constexpr std::size_t kMostAddresses = std::size_t{64} << 30;
   static constexpr std::size_t kMostStack = std::size_t{8} << 20;
   static constexpr std::size_t kMostDescriptors = 1024;
