@@ -96,7 +96,7 @@ void set_limits(rlim_t cpu_s) {
   limit(RLIMIT_AS, Child::kMostAddresses);
   limit(RLIMIT_STACK, Child::kMostStack);
   limit(RLIMIT_NOFILE, Child::kMostDescriptors);
-  limit(RLIMIT_NPROC, Child::kMostProcesses);
+  limit(RLIMIT_NPROC, RunUse::kMostProcesses);
 }
 
 [[noreturn]] void become(const Plan& plan, Confinement& confinement, pid_t parent) {
@@ -156,6 +156,7 @@ Child::Child(const Settings& settings)
     : name_(std::filesystem::path(settings.command.at(0)).filename()),
       patience_(settings.patience),
       link_(settings.link),
+      use_(settings.use),
       served_(settings.served),
       buffer_(shim::kMostData) {
   if (link_ < 0) {
@@ -201,24 +202,26 @@ std::string Child::start(const Settings& settings) {
                            .readable = readable_paths(readable_of(settings, program)),
                            .served = settings.served,
                            .as_nobody = is_root() && why_root(settings).empty()});
-  folder_ = open_folder_in(AT_FDCWD, settings.folder.c_str());
-  log_ = ProgramLog(folder_, settings.log_name);
+  const int folder = open_folder_in(AT_FDCWD, settings.folder.c_str());
+  log_ = ProgramLog(folder, settings.log_name);
   if (log_.descriptor() < 0) {
+    close(folder);
     return fmt::format("no {}: {}", settings.log_name, std::strerror(log_.error()));
   }
   if (is_root()) {
-    give_to_nobody(folder_);
+    give_to_nobody(folder);
     give_to_nobody(log_.descriptor());
   }
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    close(folder);
     return fmt::format("no link: {}", std::strerror(errno));
   }
   const std::shared_ptr<RunUse> run = settings.run ? settings.run : std::make_shared<RunUse>();
   const Plan plan{.program = program.c_str(),
                   .arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
-                  .folder = folder_,
+                  .folder = folder,
                   .log = log_.descriptor(),
                   .link = ends[1],
                   .clock_page = settings.clock_page,
@@ -230,16 +233,15 @@ std::string Child::start(const Settings& settings) {
                    [&group] { rmdir(group.c_str()); });
   close(ends[1]);
   link_ = ends[0];
+  use_ = std::make_shared<ProgramUse>(folder, warden_.process(), settings.folder_limits, run);
   if (warden_.program() < 0) return fmt::format("no process: {}", std::strerror(warden_.error()));
   is_started_ = true;
-  use_.emplace(folder_, settings.folder_limits, run);
   return "";
 }
 
 Child::~Child() {
   end();
   if (link_ >= 0) close(link_);
-  if (folder_ >= 0) close(folder_);
 }
 
 void Child::follow_thread() {
@@ -260,7 +262,7 @@ bool Child::is_within_limits(std::chrono::steady_clock::duration waited) {
     excess_ = fmt::format("computed for {} s in all, beside {} ms for each request",
                           Seconds(most).count(), kShare.count());
   } else if (use_ && (waited >= kSlice || asked_ % kLookEvery == 0)) {
-    excess_ = use_->excess(warden_.process());
+    excess_ = use_->excess();
   }
   return excess_.empty();
 }
@@ -317,13 +319,13 @@ std::string Child::ending(const std::string& reason) {
 }
 
 std::string Child::end() {
-  if (!is_started_) return "has closed its link";
+  if (!is_started_) return excess_.empty() ? "has closed its link" : excess_;
   // One that has closed its link is exiting, and has a moment for it.
   pollfd link{.fd = link_, .events = 0, .revents = 0};
   const bool is_exiting = poll(&link, 1, 0) > 0;
   const std::optional<int> status =
       warden_.status(std::chrono::milliseconds(is_exiting && excess_.empty() ? 1000 : 0));
-  if (excess_.empty() && use_) excess_ = use_->excess(warden_.process());
+  if (excess_.empty() && use_) excess_ = use_->excess();
   const bool is_killed = status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGKILL;
   if (excess_.empty() && is_killed && use_) excess_ = use_->excess_of_killed();
   use_.reset();

@@ -25,7 +25,7 @@
 //            (processes/program_use.h)
 //   disk     kMostOutput bytes a file, FolderLimits of its folder together with the files that it
 //            holds open and that have no name (processes/folder_use.h)
-//   others   kMostDescriptors; no process of its user may be made beyond kMostProcesses
+//   others   kMostDescriptors; no process beyond RunUse::kMostProcesses of its user
 //
 // The disk and the memory are looked at with every kLookEvery-th request, so that the verdict is
 // the program's doing and not the machine's speed, and while it computes for long, so that the
@@ -80,12 +80,10 @@ class Child {
   static constexpr int kMostCpu = 120;
   static constexpr std::size_t kMostOutput = std::size_t{64} << 20;
   static constexpr std::size_t kMostMemory = std::size_t{1} << 30;
-  // What is only set aside costs nothing; node does so with 10 GiB for each
-  // memory of WebAssembly.
+  // What is only set aside costs nothing; node does so with 10 GiB for a memory of WebAssembly.
   static constexpr std::size_t kMostAddresses = std::size_t{64} << 30;
   static constexpr std::size_t kMostStack = std::size_t{8} << 20;
   static constexpr std::size_t kMostDescriptors = 1024;
-  static constexpr std::size_t kMostProcesses = 4096;
   static constexpr std::uint64_t kLookEvery = 4096;
 
   struct Settings {
@@ -101,7 +99,10 @@ class Child {
     std::shared_ptr<RunUse> run{};  // what its run's programs use; empty: it is alone
     Served served = Served::kAll;
     int clock_page = -1;  // kClock: the descriptor of its memory (shim/clock_page.h)
-    int link = -1;        // the other end of somebody else's link: nothing is started
+    // The other end of a link that is there: nothing is started. Whose processes it belongs to
+    // (use()), if limits are to be looked at while it computes.
+    int link = -1;
+    std::shared_ptr<ProgramUse> use{};
   };
 
   explicit Child(const Settings& settings);
@@ -113,6 +114,8 @@ class Child {
   std::optional<ChildRequest> next();
   // The descriptor of its link; -1 if it could not be started.
   int link() const { return link_; }
+  // What it and all that it started use, for links of the latter; empty once it has ended.
+  const std::shared_ptr<ProgramUse>& use() const { return use_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
   // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
   // output.
@@ -133,9 +136,8 @@ class Child {
   std::string obstacle_;  // to its start
   std::chrono::milliseconds patience_;
   int link_;
-  int folder_ = -1;
   ProgramLog log_;
-  std::optional<ProgramUse> use_;
+  std::shared_ptr<ProgramUse> use_;
   Warden warden_;
   bool is_started_ = false;
   std::uint64_t asked_ = 0;

@@ -1,6 +1,7 @@
 #include "processes/program_use.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <utility>
 #include <vector>
@@ -19,15 +20,19 @@ std::string RunUse::memory_excess() const {
                      most_memory_ >> 20U);
 }
 
-ProgramUse::ProgramUse(int folder, const FolderLimits& limits, std::shared_ptr<RunUse> run)
-    : folder_(folder), limits_(limits), run_(std::move(run)) {}
+ProgramUse::ProgramUse(int folder, pid_t ancestor, const FolderLimits& limits,
+                       std::shared_ptr<RunUse> run)
+    : folder_(folder), ancestor_(ancestor), limits_(limits), run_(std::move(run)) {}
 
-ProgramUse::~ProgramUse() { run_->change_memory(counted_, 0); }
+ProgramUse::~ProgramUse() {
+  run_->change_memory(counted_, 0);
+  close(folder_);
+}
 
-std::string ProgramUse::excess(pid_t ancestor) {
+std::string ProgramUse::excess() {
   FolderUse disk = folder_use(folder_, limits_);
   std::uint64_t memory = 0;
-  for (const pid_t each : descendants(ancestor)) {
+  for (const pid_t each : descendants(ancestor_)) {
     add_unlinked_files(each, disk);
     memory += resident_bytes(each);
   }

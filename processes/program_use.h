@@ -6,8 +6,8 @@
 // Where there is a control group (processes/control_group.h), the kernel counts too.
 //
 //   auto run = std::make_shared<RunUse>();
-//   ProgramUse use(open_folder_in(AT_FDCWD, "/tmp/simbench/host0"), {}, run);
-//   print(use.excess(4711));  // "made more than 4096 files"
+//   ProgramUse use(open_folder_in(AT_FDCWD, "/tmp/simbench/host0"), getpid(), {}, run);
+//   print(use.excess());  // "made more than 4096 files"
 #pragma once
 
 #include <sys/types.h>
@@ -48,20 +48,21 @@ class RunUse {
 
 class ProgramUse {
  public:
-  // `folder` is a descriptor, which stays the caller's and open.
-  ProgramUse(int folder, const FolderLimits& limits, std::shared_ptr<RunUse> run);
+  // `folder` is a descriptor, which is closed with this. `ancestor` is the parent of all of the
+  // program's processes.
+  ProgramUse(int folder, pid_t ancestor, const FolderLimits& limits, std::shared_ptr<RunUse> run);
   ~ProgramUse();
   ProgramUse(const ProgramUse&) = delete;
   ProgramUse& operator=(const ProgramUse&) = delete;
 
-  // What has passed a limit, as the end of a sentence; empty: nothing. `ancestor` is the parent of
-  // all of the program's processes.
-  std::string excess(pid_t ancestor);
+  // What has passed a limit, as the end of a sentence; empty: nothing.
+  std::string excess();
   // The same of one that the kernel has killed; empty: not for a limit.
   std::string excess_of_killed() const;
 
  private:
   int folder_;
+  pid_t ancestor_;
   FolderLimits limits_;
   std::shared_ptr<RunUse> run_;
   std::uint64_t counted_ = 0;  // of the memory

@@ -7,16 +7,19 @@
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +28,8 @@
 #include <vector>
 
 #include "processes/child.h"
+#include "processes/program_use.h"
+#include "recording/distrusted_folder.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::processes {
@@ -234,6 +239,26 @@ TEST_F(ConfinementTest, OutputMemoryAndPatienceHaveLimits) {
   Child::Settings patient = settings({"compute"});
   patient.patience = std::chrono::milliseconds(100);
   EXPECT_EQ(note_of(patient), "simbench_escapes: computed for 0.1 s without waiting");
+}
+
+// As those of a program's own children are.
+TEST_F(ConfinementTest, ALinkThatIsThereHasTheLimitsOfItsProgram) {
+  for (const char* name : {"one", "two", "three"}) folder_.write(name, "");
+  const auto ending = [this](std::size_t most) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    Child child({.command = {"helper"},
+                 .patience = std::chrono::milliseconds(200),
+                 .link = ends[0],
+                 .use = std::make_shared<ProgramUse>(
+                     open_folder_in(AT_FDCWD, folder_.path().c_str()), getpid(),
+                     FolderLimits{.files = most}, std::make_shared<RunUse>())});
+    EXPECT_FALSE(child.next());
+    close(ends[1]);
+    return child.ending();
+  };
+  EXPECT_EQ(ending(2), "helper: made more than 2 files");
+  EXPECT_EQ(ending(1000), "helper: computed for 0.2 s without waiting");
 }
 
 TEST_F(ConfinementTest, WhatCannotBeStartedSaysWhy) {

@@ -117,15 +117,15 @@ TEST_F(FolderUseTest, MemoryIsThatOfTheRunsProgramsTogether) {
   const LargeProcess one(each);
   const LargeProcess two(each);
   auto run = std::make_shared<RunUse>(each + own + 30 * kMebibyte);
-  ProgramUse first(folder_, {}, run);
-  EXPECT_EQ(first.excess(one.parent()), "");
-  EXPECT_EQ(first.excess(one.parent()), "") << "it is not counted twice";
+  ProgramUse first(dup(folder_), one.parent(), {}, run);
+  EXPECT_EQ(first.excess(), "");
+  EXPECT_EQ(first.excess(), "") << "it is not counted twice";
   EXPECT_THAT(run->memory(), testing::AllOf(Ge(each), Le(each + own)));
   {
-    ProgramUse second(folder_, {}, run);
-    EXPECT_EQ(second.excess(two.parent()), run->memory_excess());
+    ProgramUse second(dup(folder_), two.parent(), {}, run);
+    EXPECT_EQ(second.excess(), run->memory_excess());
   }
-  EXPECT_EQ(first.excess(one.parent()), "") << "the other has ended";
+  EXPECT_EQ(first.excess(), "") << "the other has ended";
 }
 
 }  // namespace
