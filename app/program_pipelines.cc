@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/node_programs.h"
+#include "processes/child.h"
 #include "processes/placeholders.h"
 #include "recording/number_in.h"
 #include "scenarios/document.h"
@@ -131,6 +133,35 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
   } catch (const sim::ProgramError& missing) {
     throw scenarios::InputError(fmt::format("pipeline '{}': {}", pipeline.name, missing.what()));
   }
+}
+
+std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
+                                         const ProgramFolders& options) {
+  if (!pipeline.programs) return {};
+  HostPrograms programs = *pipeline.programs;
+  std::map<std::string, std::string> paths;
+  std::set<std::string> remarks;
+  try {
+    const std::string shim = find_shim(options.library_folder);
+    find(programs, paths);
+    for (const auto* role : {&programs.master, &programs.slave}) {
+      for (const HostPrograms::Command& command : *role) {
+        const auto path = paths.find(command.front());
+        const processes::Child::Settings settings{
+            .command = command,
+            .program = path == paths.end() ? "" : path->second,
+            .environment = programs.environment,
+            .folder = options.log_folder,
+            .shim = shim,
+            .readable = programs.readable};
+        remarks.insert(processes::why_root(settings));
+      }
+    }
+  } catch (const sim::ProgramError&) {
+    return {};
+  }
+  remarks.erase("");
+  return {remarks.begin(), remarks.end()};
 }
 
 void use_programs(const ProgramFolders& options) {

@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "algorithms/ports/host_sync.h"
 #include "scenarios/scenario.h"
@@ -35,6 +36,11 @@ struct ProgramFolders {
 std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline,
                                              const std::string& interface,
                                              const ProgramFolders& options);
+
+// What is to be known of how this machine runs a pipeline's programs, each one line: that root's
+// are not nobody's (processes/lesser_user.h). Nothing of programs that cannot run.
+std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
+                                         const ProgramFolders& options = {});
 
 // Says how pipelines with programs run (evaluation/run/pipeline_choice.h).
 void use_programs(const ProgramFolders& options = {});

@@ -8,8 +8,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "app/program_pipelines.h"
+#include "cli/messages.h"
 #include "scenarios/document.h"
 #include "scenarios/input_file.h"
 #include "scenarios/loader.h"
@@ -68,6 +71,20 @@ NamedProgram read_program(const std::string& text, const std::string& label) {
   return from_file(text.substr(0, equals), text.substr(equals + 1), label);
 }
 
+// On the pipelines that are to run: all, or those named.
+void say_remarks(const scenarios::Scenario& scenario, const std::vector<std::string>& pipelines,
+                 const ProgramOptions& options) {
+  std::set<std::string> remarks;
+  for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
+    if (!pipelines.empty() && std::ranges::find(pipelines, pipeline.name) == pipelines.end())
+      continue;
+    for (std::string& remark : app::program_remarks(pipeline, {.log_folder = options.log_folder})) {
+      remarks.insert(std::move(remark));
+    }
+  }
+  for (const std::string& remark : remarks) print_note(remark);
+}
+
 }  // namespace
 
 void add_program_options(Command& command, ProgramOptions& options) {
@@ -87,7 +104,10 @@ scenarios::Scenario load_with_programs(const std::string& scenario,
   std::vector<scenarios::Override> overrides =
       evaluation::with_ad_hoc_pipelines(scenario, overrides_of(sets), pipelines, ad_hoc);
   scenarios::Scenario loaded = scenarios::load_scenario(scenario, overrides);
-  if (options.programs.empty()) return loaded;
+  if (options.programs.empty()) {
+    say_remarks(loaded, pipelines, options);
+    return loaded;
+  }
   const scenarios::Pipeline first = loaded.pipelines.front();
   for (const std::string& text : options.programs) {
     const std::string label = "--program " + scenarios::shown_text(text);
@@ -100,7 +120,9 @@ scenarios::Scenario load_with_programs(const std::string& scenario,
       pipelines.push_back(program.name);
     }
   }
-  return scenarios::load_scenario(scenario, overrides);
+  loaded = scenarios::load_scenario(scenario, overrides);
+  say_remarks(loaded, pipelines, options);
+  return loaded;
 }
 
 }  // namespace simbench::cli

@@ -22,11 +22,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <thread>
+#include <mutex>
 #include <utility>
 
 #include "processes/confinement.h"
+#include "processes/lesser_user.h"
+#include "processes/readable.h"
+#include "recording/distrusted_folder.h"
 
 namespace simbench::processes {
 namespace {
@@ -34,6 +36,8 @@ namespace {
 // Its number in the child: programs use the first ones, and some close those that follow.
 constexpr int kLink = 200;
 constexpr int kCannotRun = 127;
+
+// How often a program that computes for long is looked at.
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
@@ -48,11 +52,12 @@ struct Plan {
   const char* program;
   char* const* arguments;
   char* const* environment;
-  const char* folder;
-  const char* log;
+  int folder;
+  int log;
   int link;
   int clock_page;
-  pid_t parent;
+  int group;  // the entrance to the run's control group; -1: none
+  rlim_t cpu_s;
 };
 
 // Says why in the log, which is its error output by then.
@@ -79,20 +84,29 @@ void forget_parent() {
   syscall(SYS_close_range, 3, ~0U, CLOSE_RANGE_CLOEXEC);
 }
 
-[[noreturn]] void become(const Plan& plan, Confinement& confinement) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != plan.parent) _exit(kCannotRun);
-  forget_parent();
-  personality(ADDR_NO_RANDOMIZE);
-  setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
+void set_limits(rlim_t cpu_s) {
+  // The signal at the first may be handled; after these seconds the kernel kills.
+  constexpr rlim_t kAfterwards_s = 5;
+  const rlimit cpu{.rlim_cur = cpu_s, .rlim_max = cpu_s + kAfterwards_s};
+  setrlimit(RLIMIT_CPU, &cpu);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, Child::kMostOutput);
   limit(RLIMIT_DATA, Child::kMostMemory);
+  limit(RLIMIT_AS, Child::kMostAddresses);
+  limit(RLIMIT_STACK, Child::kMostStack);
   limit(RLIMIT_NOFILE, Child::kMostDescriptors);
-  if (chdir(plan.folder) != 0) _exit(kCannotRun);
+  limit(RLIMIT_NPROC, RunUse::kMostProcesses);
+}
+
+[[noreturn]] void become(const Plan& plan, Confinement& confinement, pid_t parent) {
+  // Where that is not allowed the other limits remain.
+  if (const ssize_t entered = write(plan.group, "0", 1); entered < 0) errno = 0;
+  forget_parent();
+  personality(ADDR_NO_RANDOMIZE);
+  setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
+  if (fchdir(plan.folder) != 0) _exit(kCannotRun);
   const int input = open("/dev/null", O_RDONLY);
-  const int log = open(plan.log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0600);
-  if (input < 0 || log < 0 || dup2(input, 0) < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0) {
+  if (input < 0 || dup2(input, 0) < 0 || dup2(plan.log, 1) < 0 || dup2(plan.log, 2) < 0) {
     _exit(kCannotRun);
   }
   if (dup2(plan.link, kLink) < 0) fail("link", errno);
@@ -100,16 +114,47 @@ void forget_parent() {
   if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
     fail(failure.what, failure.error);
   }
+  if (getppid() != parent) _exit(kCannotRun);  // before its death could be heard of
+  set_limits(plan.cpu_s);
   execve(plan.program, plan.arguments, plan.environment);
   fail(plan.program, errno);
 }
 
+ReadableOf readable_of(const Child::Settings& settings, const std::string& program) {
+  return {.program = program,
+          .words = {settings.command.begin() + 1, settings.command.end()},
+          .environment = settings.environment,
+          .shim = settings.shim,
+          .readable = settings.readable,
+          .served = settings.served};
+}
+
+const std::string& program_of(const Child::Settings& settings) {
+  return settings.program.empty() ? settings.command.front() : settings.program;
+}
+
+// In whole seconds, one at least.
+rlim_t cpu_seconds(std::chrono::milliseconds patience) {
+  const auto whole = std::chrono::ceil<std::chrono::seconds>(patience * Child::kMostCpu);
+  return static_cast<rlim_t>(std::max<std::chrono::seconds::rep>(1, whole.count()));
+}
+
 }  // namespace
+
+std::string why_root(const Child::Settings& settings) {
+  if (!is_root()) return "";
+  std::vector<std::string> needed = needed_paths(readable_of(settings, program_of(settings)));
+  needed.push_back(settings.folder);
+  const std::string obstacle = obstacle_to_nobody(needed);
+  if (obstacle.empty()) return "";
+  return fmt::format("{} runs as root, without root's capabilities, and not as nobody: {}",
+                     std::filesystem::path(settings.command.at(0)).filename().string(), obstacle);
+}
 
 Child::Child(const Settings& settings)
     : name_(std::filesystem::path(settings.command.at(0)).filename()),
-      log_(settings.folder + "/" + settings.log_name),
       patience_(settings.patience),
+      use_(settings.use),
       served_(settings.served) {
   int link = settings.link;
   if (link < 0) {
@@ -122,7 +167,21 @@ Child::Child(const Settings& settings)
   link_ = std::make_unique<ThreadLink>(link, patience_);
 }
 
+namespace {
+
+// A program takes four, a sweep has many: as many as the system lets this process have.
+void raise_own_descriptors() {
+  rlimit own{};
+  if (getrlimit(RLIMIT_NOFILE, &own) != 0) return;
+  own.rlim_cur = own.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &own);
+}
+
+}  // namespace
+
 std::string Child::start(const Settings& settings, int& link) {
+  static std::once_flag raised;
+  std::call_once(raised, raise_own_descriptors);
   std::vector<std::string> arguments = settings.command;
   std::vector<std::string> environment = {
       fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
@@ -132,27 +191,46 @@ std::string Child::start(const Settings& settings, int& link) {
   }
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
-  const std::string& program =
-      settings.program.empty() ? settings.command.front() : settings.program;
-  Confinement confinement(settings.folder, settings.served);
+  const std::string& program = program_of(settings);
+  Confinement confinement({.folder = settings.folder,
+                           .readable = readable_paths(readable_of(settings, program)),
+                           .served = settings.served,
+                           .as_nobody = is_root() && why_root(settings).empty()});
+  const int folder = open_folder_in(AT_FDCWD, settings.folder.c_str());
+  log_ = ProgramLog(folder, settings.log_name);
+  if (log_.descriptor() < 0) {
+    close(folder);
+    return fmt::format("no {}: {}", settings.log_name, std::strerror(log_.error()));
+  }
+  if (is_root()) {
+    give_to_nobody(folder);
+    give_to_nobody(log_.descriptor());
+  }
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    close(folder);
     return fmt::format("no link: {}", std::strerror(errno));
   }
+  const std::shared_ptr<RunUse> run = settings.run ? settings.run : std::make_shared<RunUse>();
   const Plan plan{.program = program.c_str(),
                   .arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
-                  .folder = settings.folder.c_str(),
-                  .log = settings.log_name.c_str(),
+                  .folder = folder,
+                  .log = log_.descriptor(),
                   .link = ends[1],
                   .clock_page = settings.clock_page,
-                  .parent = getpid()};
-  process_ = fork();
-  if (process_ == 0) become(plan, confinement);
-  const int error = errno;
+                  .group = run->group().entrance(),
+                  .cpu_s = served_ == Served::kAll ? cpu_seconds(patience_) : RLIM_INFINITY};
+  const std::filesystem::path& group = run->group().path();
+  // The last of the run's wardens finds it empty.
+  warden_ = Warden([&](pid_t parent) { become(plan, confinement, parent); },
+                   [&group] { rmdir(group.c_str()); });
   close(ends[1]);
   link = ends[0];
-  return process_ < 0 ? fmt::format("no process: {}", std::strerror(error)) : "";
+  use_ = std::make_shared<ProgramUse>(folder, warden_.process(), settings.folder_limits, run);
+  if (warden_.program() < 0) return fmt::format("no process: {}", std::strerror(warden_.error()));
+  is_started_ = true;
+  return "";
 }
 
 Child::~Child() { end(); }
@@ -163,13 +241,34 @@ void Child::follow_thread() {
   cpu_set_t only;
   CPU_ZERO(&only);
   CPU_SET(cpu, &only);
-  sched_setaffinity(process_, sizeof only, &only);  // without it all goes on, slower
+  sched_setaffinity(warden_.program(), sizeof only, &only);  // without it all goes on, slower
+}
+
+bool Child::is_within_limits(std::chrono::steady_clock::duration waited) {
+  using Seconds = std::chrono::duration<double>;
+  const std::chrono::milliseconds most = kPatiencesInAll * patience_;
+  if (waited >= patience_) {
+    excess_ = fmt::format("computed for {} s without waiting", Seconds(patience_).count());
+  } else if (served_ == Served::kAll && computed_ + waited > most + asked_ * kShare) {
+    excess_ = fmt::format("computed for {} s in all, beside {} ms for each request",
+                          Seconds(most).count(), kShare.count());
+  } else if (use_ && (waited >= ThreadLink::kLook || asked_ % kLookEvery == 0)) {
+    excess_ = use_->excess();
+  }
+  return excess_.empty();
 }
 
 std::optional<ChildRequest> Child::next(const std::function<bool()>& is_asleep) {
   if (!obstacle_.empty()) return std::nullopt;
-  std::optional<ChildRequest> request = link_->next(is_asleep);
-  has_asked_ |= request.has_value();
+  std::chrono::steady_clock::duration took{};
+  std::optional<ChildRequest> request = link_->next(
+      [&](std::chrono::steady_clock::duration waited) {
+        took = waited;
+        return is_within_limits(waited);
+      },
+      is_asleep);
+  asked_ += request ? 1 : 0;
+  computed_ += took;
   return request;
 }
 
@@ -181,29 +280,25 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
 std::string Child::ending(const std::string& reason) {
   if (!obstacle_.empty()) return fmt::format("{}: {}", name_, obstacle_);
   const std::string how = end();
-  const std::string said = last_line();
+  const std::string said = log_.last_line();
   return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,
                      said.empty() ? "" : ": " + said);
 }
 
 std::string Child::end() {
-  if (process_ < 0) return "has closed its link";
-  int status = 0;
+  if (!is_started_) return excess_.empty() ? "has closed its link" : excess_;
   // One that has closed its link is exiting, and has a moment for it.
   pollfd link{.fd = link_->descriptor(), .events = 0, .revents = 0};
-  const int moments = poll(&link, 1, 0) > 0 ? 200 : 0;
-  pid_t ended = waitpid(process_, &status, WNOHANG);
-  for (int i = 0; i < moments && ended == 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    ended = waitpid(process_, &status, WNOHANG);
-  }
-  const bool ended_itself = ended == process_;
-  if (!ended_itself) {
-    kill(process_, SIGKILL);
-    waitpid(process_, &status, 0);
-  }
-  process_ = -1;
-  return how_it_ended(ended_itself, status);
+  const bool is_exiting = poll(&link, 1, 0) > 0;
+  const std::optional<int> status =
+      warden_.status(std::chrono::milliseconds(is_exiting && excess_.empty() ? 1000 : 0));
+  if (excess_.empty() && use_) excess_ = use_->excess();
+  const bool is_killed = status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGKILL;
+  if (excess_.empty() && is_killed && use_) excess_ = use_->excess_of_killed();
+  use_.reset();
+  warden_.end();
+  is_started_ = false;
+  return how_it_ended(status);
 }
 
 namespace {
@@ -212,6 +307,8 @@ std::string signal_text(int number) {
   switch (number) {
     case SIGXFSZ:
       return fmt::format("wrote more than {} MiB into a file", Child::kMostOutput >> 20U);
+    case SIGXCPU:
+      return "used the processor for longer than it may";
     case SIGSYS:
       return "made a system call that is not for programs of the simulated world";
     default:
@@ -223,31 +320,13 @@ std::string signal_text(int number) {
 
 }  // namespace
 
-std::string Child::how_it_ended(bool itself, int status) const {
-  if (link_->was_too_slow()) {
-    return fmt::format("computed for {} s without waiting",
-                       std::chrono::duration<double>(patience_).count());
-  }
-  if (!itself) return "was ended";
-  if (WIFSIGNALED(status)) return signal_text(WTERMSIG(status));
-  if (WEXITSTATUS(status) == kCannotRun && !has_asked_) return "cannot be run";
-  return fmt::format("exited with status {}{}", WEXITSTATUS(status),
-                     has_asked_ ? "" : ", and the preloaded library was never loaded");
-}
-
-// The log may be long, and need not have lines.
-std::string Child::last_line() const {
-  constexpr std::streamoff kMost = 400;
-  std::ifstream log(log_, std::ios::binary | std::ios::ate);
-  if (!log) return "";
-  const std::streamoff begin = std::max<std::streamoff>(0, log.tellg() - kMost);
-  log.seekg(begin);
-  std::string line;
-  std::string last;
-  while (std::getline(log, line)) {
-    if (!line.empty()) last = line;
-  }
-  return last;
+std::string Child::how_it_ended(std::optional<int> status) const {
+  if (!excess_.empty()) return excess_;
+  if (!status) return "was ended";
+  if (WIFSIGNALED(*status)) return signal_text(WTERMSIG(*status));
+  if (WEXITSTATUS(*status) == kCannotRun && asked_ == 0) return "cannot be run";
+  return fmt::format("exited with status {}{}", WEXITSTATUS(*status),
+                     asked_ > 0 ? "" : ", and the preloaded library was never loaded");
 }
 
 }  // namespace simbench::processes

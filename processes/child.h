@@ -2,20 +2,34 @@
 // that lives while the world asks it to.
 //
 // It is started with the shim preloaded (shim/link.h) in a folder of its own, with an empty
-// environment but for what is stated, no input, and its output in a file of that folder. While it
-// computes, the world stands still: next() blocks until it asks for something, at most kPatience of
-// real time. The destructor kills it.
+// environment but for what is stated, no input, and its output in a file of that folder
+// (processes/program_log.h). While it computes, the world stands still: next() blocks until it asks
+// for something. The destructor kills it and all that it started, and so does whatever ends this
+// process (processes/warden.h).
 //
-// It is confined (processes/confinement.h): it writes in its folder only, and a call that passes
-// libc by and would reach the real clocks, a network or another process ends it, by name. It
-// inherits no descriptors and no signals, is one process, and sees itself as root of its host.
+// It is confined (processes/confinement.h): it writes in its folder only and reads what is named,
+// and a call that passes libc by and would reach the real clocks, a network or another process ends
+// it, by name. It inherits no descriptors and no signals, and sees itself as root of its host.
+// Root's programs are nobody's where that can be.
 //
 // It runs on the CPU of the thread that serves it: one of the two waits always, and to wake another
 // CPU costs more than most requests. A process of a real host (Served::kClock) runs where it likes,
 // and the world waits for it by link(), next() being due when that can be read.
 //
-// Limits: kMostOutput bytes a file, kMostMemory of address space, kMostDescriptors, no core dump.
-// Addresses are not randomised, so that its bytes repeat.
+// Limits, each of which ends it, and ending() says which. Addresses are not randomised, so that its
+// bytes repeat; no core is dumped.
+//
+//   time     `patience` of real time for a request; in all kPatiencesInAll times that, beside
+//            kShare a request; of the processor, kMostCpu patiences
+//   memory   kMostMemory bytes of its own data, and RunUse of the run's programs together
+//            (processes/program_use.h)
+//   disk     kMostOutput bytes a file, FolderLimits of its folder together with the files that it
+//            holds open and that have no name (processes/folder_use.h)
+//   others   kMostDescriptors; no process beyond RunUse::kMostProcesses of its user
+//
+// The disk and the memory are looked at with every kLookEvery-th request, so that the verdict is
+// the program's doing and not the machine's speed, and while it computes for long, so that the
+// machine is safe.
 //
 // The library reaches only what loads libraries: look at the program first
 // (sim/programs/program_file.h). It dies with the thread that makes this, not with the last one of
@@ -33,6 +47,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,28 +56,47 @@
 #include <vector>
 
 #include "processes/call_filter.h"
+#include "processes/folder_use.h"
+#include "processes/program_log.h"
+#include "processes/program_use.h"
 #include "processes/thread_link.h"
+#include "processes/warden.h"
 
 namespace simbench::processes {
 
 class Child {
  public:
   static constexpr std::chrono::seconds kPatience{30};
+  // A daemon's answer takes 20 to 200 us, a slow machine's Python some ms.
+  static constexpr int kPatiencesInAll = 10;
+  static constexpr std::chrono::milliseconds kShare{10};
+  // An hour: a week of a Python program's simulated time is a quarter of one.
+  static constexpr int kMostCpu = 120;
   static constexpr std::size_t kMostOutput = std::size_t{64} << 20;
   static constexpr std::size_t kMostMemory = std::size_t{1} << 30;
+  // What is only set aside costs nothing; node does so with 10 GiB for a memory of WebAssembly.
+  static constexpr std::size_t kMostAddresses = std::size_t{64} << 30;
+  static constexpr std::size_t kMostStack = std::size_t{8} << 20;
   static constexpr std::size_t kMostDescriptors = 1024;
+  static constexpr std::uint64_t kLookEvery = 4096;
 
   struct Settings {
     std::vector<std::string> command{};  // as the program sees it
     std::string program{};               // its absolute path; empty: the command's first word
     std::map<std::string, std::string> environment{};
-    std::string folder{};    // absolute; its working folder
-    std::string log_name{};  // within the folder
-    std::string shim{};      // absolute
+    std::string folder{};                 // absolute; its working folder
+    std::string log_name{};               // within the folder
+    std::string shim{};                   // absolute
+    std::vector<std::string> readable{};  // files and folders, absolute, beside the usual
     std::chrono::milliseconds patience = kPatience;
+    FolderLimits folder_limits{};
+    std::shared_ptr<RunUse> run{};  // what its run's programs use; empty: it is alone
     Served served = Served::kAll;
     int clock_page = -1;  // kClock: the descriptor of its memory (shim/clock_page.h)
-    int link = -1;        // the other end of somebody else's link: nothing is started
+    // The other end of a link that is there: nothing is started. Whose processes it belongs to
+    // (use()), if limits are to be looked at while it computes.
+    int link = -1;
+    std::shared_ptr<ProgramUse> use{};
   };
 
   explicit Child(const Settings& settings);
@@ -70,15 +104,18 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Nothing: it has ended, or has computed for longer than kPatience, or is asleep, as
-  // ThreadLink::next() has it.
+  // Nothing: it has ended, has passed a limit, or is asleep, as ThreadLink::next() has it.
   std::optional<ChildRequest> next(const std::function<bool()>& is_asleep = {});
-  bool was_asleep() const { return link_->was_asleep(); }
-  // The descriptor of its link; -1 if it could not be started.
+  // Its link; without a descriptor if it could not be started.
+  ThreadLink& thread_link() { return *link_; }
   int link() const { return link_->descriptor(); }
   std::chrono::milliseconds patience() const { return patience_; }
   // What the machine calls it; -1: nothing was started.
-  pid_t process() const { return process_; }
+  pid_t process() const { return warden_.program(); }
+  // The limit that it has passed; empty: none.
+  const std::string& excess() const { return excess_; }
+  // What it and all that it started use, for links of the latter; empty once it has ended.
+  const std::shared_ptr<ProgramUse>& use() const { return use_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
   // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
   // output.
@@ -88,20 +125,27 @@ class Child {
   // Returns why it cannot be started, or nothing.
   std::string start(const Settings& settings, int& link);
   void follow_thread();
+  bool is_within_limits(std::chrono::steady_clock::duration waited);
   // Returns how it ended.
   std::string end();
-  std::string how_it_ended(bool itself, int status) const;
-  std::string last_line() const;
+  std::string how_it_ended(std::optional<int> status) const;
 
   std::string name_;
-  std::string log_;
   std::string obstacle_;  // to its start
   std::chrono::milliseconds patience_;
   std::unique_ptr<ThreadLink> link_;
-  pid_t process_ = -1;
-  bool has_asked_ = false;
+  ProgramLog log_;
+  std::shared_ptr<ProgramUse> use_;
+  Warden warden_;
+  bool is_started_ = false;
+  std::uint64_t asked_ = 0;
+  std::chrono::steady_clock::duration computed_{};  // in real time, in all
+  std::string excess_;                              // the limit that it has passed
   Served served_;
   int cpu_ = -1;  // the one that it is bound to
 };
+
+// Whether a program of these settings would be root's and stay it, and why: one line, or empty.
+std::string why_root(const Child::Settings& settings);
 
 }  // namespace simbench::processes

@@ -6,14 +6,20 @@
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
 #include <linux/securebits.h>
+#include <signal.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <utility>
+
+#include "processes/lesser_user.h"
+#include "processes/own_process_files.h"
 
 namespace simbench::processes {
 namespace {
@@ -21,6 +27,9 @@ namespace {
 // The newest kernel knows all of these; the headers may be older.
 constexpr std::uint64_t kRead =
     LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+// What can be said of a file that is no folder.
+constexpr std::uint64_t kOfFiles =
+    LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE;
 constexpr std::uint64_t kMakeAndRemove = 0x1FF0;      // each kind of file, since version 1
 constexpr std::uint64_t kRefer = 1U << 13U;           // since version 2: links and moves
 constexpr std::uint64_t kTruncate = 1U << 14U;        // 3
@@ -52,9 +61,12 @@ std::pair<LandlockRules, std::size_t> rules_of(long version) {
   return {rules, size};
 }
 
+// Makes async-signal-safe calls only.
 bool allow_below(int rules, const char* path, std::uint64_t rights) {
   const int folder = open(path, O_PATH | O_CLOEXEC);
   if (folder < 0) return false;
+  struct stat status {};
+  if (fstat(folder, &status) == 0 && !S_ISDIR(status.st_mode)) rights &= kOfFiles;
   const landlock_path_beneath_attr rule{.allowed_access = rights, .parent_fd = folder};
   const long added = syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
   const int error = errno;
@@ -64,7 +76,7 @@ bool allow_below(int rules, const char* path, std::uint64_t rights) {
 }
 
 // A descriptor; -1 without Landlock.
-int landlock_rules(const std::string& folder) {
+int landlock_rules(const Confinement::Settings& settings) {
   const long version =
       syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version <= 0) {
@@ -75,20 +87,22 @@ int landlock_rules(const std::string& folder) {
   }
   const auto [handled, size] = rules_of(version);
   const int rules = static_cast<int>(syscall(SYS_landlock_create_ruleset, &handled, size, 0));
-  const std::uint64_t null_rights = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE;
-  if (rules >= 0 && allow_below(rules, "/", kRead) &&
-      allow_below(rules, "/dev/null", null_rights) &&
-      allow_below(rules, folder.c_str(), handled.files)) {
-    return rules;
+  if (rules >= 0) {
+    // Most of what is usually there may not be.
+    for (const std::string& path : settings.readable) allow_below(rules, path.c_str(), kRead);
+    for (const char* device : {"/dev/null", "/dev/zero", "/dev/full"}) {
+      allow_below(rules, device, LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE);
+    }
+    if (allow_below(rules, settings.folder.c_str(), handled.files)) return rules;
   }
   const int error = errno;
   if (rules >= 0) close(rules);
-  throw ConfinementError(
-      fmt::format("{} cannot be made a program's only folder: {}", folder, std::strerror(error)));
+  throw ConfinementError(fmt::format("{} cannot be made a program's only folder: {}",
+                                     settings.folder, std::strerror(error)));
 }
 
 // What fails here fails for who has no rights to lose.
-bool drop_capabilities() {
+void keep_from_gaining() {
   for (unsigned long each = 0; prctl(PR_CAPBSET_READ, each, 0, 0, 0) >= 0; ++each) {
     prctl(PR_CAPBSET_DROP, each, 0, 0, 0);
   }
@@ -98,15 +112,30 @@ bool drop_capabilities() {
             SECBIT_NO_CAP_AMBIENT_RAISE_LOCKED,
         0, 0, 0);
   prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+}
+
+bool drop_capabilities() {
   __user_cap_header_struct head{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
   const __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3] = {};
   return syscall(SYS_capset, &head, none) == 0;
 }
 
+// Without /proc there is nothing to read.
+void allow_own_process_files(int rules) {
+  std::array<char, 64> name{};
+  char* const file = stpcpy(name.data(), "/proc/self/");
+  for (const char* each : kOwnProcessFiles) {
+    strcpy(file, each);
+    allow_below(rules, name.data(), LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR);
+  }
+}
+
 }  // namespace
 
-Confinement::Confinement(const std::string& folder, Served served)
-    : rules_(landlock_rules(folder)), filter_(call_filter(served)) {}
+Confinement::Confinement(const Settings& settings)
+    : rules_(landlock_rules(settings)),
+      as_nobody_(settings.as_nobody),
+      filter_(call_filter(settings.served)) {}
 
 Confinement::~Confinement() {
   if (rules_ >= 0) close(rules_);
@@ -114,6 +143,10 @@ Confinement::~Confinement() {
 
 Confinement::Failure Confinement::apply() {
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return {"no_new_privs", errno};
+  keep_from_gaining();
+  if (rules_ >= 0) allow_own_process_files(rules_);
+  if (as_nobody_ && !become_nobody()) return {"nobody", errno};
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // another user forgets it
   if (!drop_capabilities()) return {"capset", errno};
   if (rules_ >= 0 && syscall(SYS_landlock_restrict_self, rules_, 0) != 0) {
     return {"landlock", errno};

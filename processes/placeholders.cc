@@ -11,6 +11,9 @@
 #include <string_view>
 #include <utility>
 
+#include "processes/lesser_user.h"
+#include "recording/distrusted_folder.h"
+
 namespace simbench::processes {
 namespace {
 
@@ -58,7 +61,7 @@ std::map<std::string, std::string> fill(std::map<std::string, std::string> envir
 
 std::string make_folder(const std::filesystem::path& folder,
                         const scenarios::HostPrograms& programs, const HostPlaces& places) {
-  std::filesystem::remove_all(folder);
+  remove_tree(folder);
   std::filesystem::create_directories(folder);
   for (const auto& [name, content] : programs.files) {
     if (lacks_drift(content, places)) continue;
@@ -67,6 +70,7 @@ std::string make_folder(const std::filesystem::path& folder,
     const timespec begin{.tv_sec = shim::kWorldBegin / 1'000'000'000, .tv_nsec = 0};
     const timespec both[] = {begin, begin};
     utimensat(AT_FDCWD, (folder / name).c_str(), both, 0);
+    if (is_root()) give_to_nobody(folder / name);
   }
   return folder.string();
 }
@@ -94,6 +98,7 @@ std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& pr
     }
   }
   for (const auto& [name, content] : programs.files) look(content);
+  for (const std::string& path : programs.readable) look(path);
   for (const auto& [name, value] : programs.environment) look(value);
   return found;
 }

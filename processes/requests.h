@@ -1,8 +1,8 @@
 // Reading what a program asked for and writing what it is told. Programs are not trusted: whatever
 // is no request throws BadRequest, which ends the program.
 //
-//   const auto wanted = read_head<shim::TimerSetting>(request.data);
-//   answer.data = bytes_of(wanted);
+//   const Bytes data = bytes_of(shim::TimerSetting{.left = 1'000, .interval = 0});
+//   const auto wanted = read_head<shim::TimerSetting>(data);
 #pragma once
 
 #include <cstddef>

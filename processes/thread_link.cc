@@ -61,7 +61,8 @@ void ThreadLink::ask_for_sender() {
   asks_for_sender_ = setsockopt(descriptor_, SOL_SOCKET, SO_PASSCRED, &on, sizeof on) == 0;
 }
 
-std::optional<ChildRequest> ThreadLink::next(const std::function<bool()>& is_asleep) {
+std::optional<ChildRequest> ThreadLink::next(const std::function<bool(Waited)>& goes_on,
+                                             const std::function<bool()>& is_asleep) {
   ChildRequest request;
   buffer_.resize(shim::kMostData);
   std::array<iovec, 2> pieces{
@@ -79,10 +80,10 @@ std::optional<ChildRequest> ThreadLink::next(const std::function<bool()>& is_asl
     message.msg_control = control.data();
     message.msg_controllen = control.size();
     size = recvmsg(descriptor_, &message, MSG_CMSG_CLOEXEC);
-    if (size >= 0 || (errno != EINTR && errno != EAGAIN)) break;
-    was_too_slow_ = std::chrono::steady_clock::now() - begin >= patience_;
-    if (was_too_slow_) return std::nullopt;
-    if (errno == EINTR || !is_asleep) continue;
+    const int error = size < 0 ? errno : 0;
+    if (!goes_on(std::chrono::steady_clock::now() - begin)) return std::nullopt;
+    if (error != EINTR && error != EAGAIN) break;
+    if (error == EINTR || !is_asleep) continue;
     seen_asleep = is_asleep() ? seen_asleep + 1 : 0;
     was_asleep_ = seen_asleep == 2;
     if (was_asleep_) return std::nullopt;

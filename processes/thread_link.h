@@ -4,7 +4,8 @@
 // descriptor is taken with the requests that pass one; of others it is closed.
 //
 //   ThreadLink link(descriptor, std::chrono::seconds(30));
-//   while (const std::optional<ChildRequest> request = link.next()) link.reply(0, 0, {});
+//   const auto goes_on = [](ThreadLink::Waited waited) { return waited < std::chrono::seconds(30);
+//   }; while (link.next(goes_on)) link.reply(0, 0, {});
 //
 // Complexity: a request and its reply are a system call each.
 #pragma once
@@ -45,10 +46,12 @@ class ThreadLink {
   int descriptor() const { return descriptor_; }
   // Once, before the other end sends anything: the first request says who sent it.
   void ask_for_sender();
-  // Nothing: the other end is closed, has computed for longer than the patience, or is asleep:
-  // `is_asleep` is asked every kLook while there is no request, and must say so twice.
-  std::optional<ChildRequest> next(const std::function<bool()>& is_asleep = {});
-  bool was_too_slow() const { return was_too_slow_; }
+  // Nothing: the other end is closed, may not go on, or is asleep. `goes_on` is asked with the time
+  // that it has taken, every kLook and when a request has come; `is_asleep` every kLook, and must
+  // say so twice.
+  using Waited = std::chrono::steady_clock::duration;
+  std::optional<ChildRequest> next(const std::function<bool(Waited)>& goes_on,
+                                   const std::function<bool()>& is_asleep = {});
   bool was_asleep() const { return was_asleep_; }
   // Waits until there is a request, an end, or the patience is over.
   void await_request() const;
@@ -59,7 +62,6 @@ class ThreadLink {
   int descriptor_;
   std::chrono::milliseconds patience_;
   bool asks_for_sender_ = false;
-  bool was_too_slow_ = false;
   bool was_asleep_ = false;
   Bytes buffer_{};
 };

@@ -2,7 +2,8 @@
 
 #include <mutex>
 #include <set>
-#include <system_error>
+
+#include "recording/distrusted_folder.h"
 
 namespace simbench {
 namespace {
@@ -33,8 +34,7 @@ Disposable::~Disposable() {
   if (path_.empty()) return;
   DisposablePaths& all = disposable_paths();
   const std::lock_guard lock(all.mutex);
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
+  remove_tree(path_);
   all.paths.erase(path_);
 }
 
@@ -54,10 +54,7 @@ void Disposable::keep(const std::function<void()>& publish) {
 void dispose_of_all() {
   DisposablePaths& all = disposable_paths();
   all.mutex.lock();  // for good
-  for (const fs::path& path : all.paths) {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
+  for (const fs::path& path : all.paths) remove_tree(path);
 }
 
 }  // namespace simbench

@@ -362,7 +362,8 @@ bool is_file_name(const std::string& name) {
   return name.find("//") == std::string::npos;
 }
 
-// Files of the host's folder, and variables that leave the loader alone.
+// Files of the host's folder, variables that leave the loader alone, paths that do not depend on
+// where simbench runs.
 void check_programs(const Scenario& scenario, const std::string& pointer,
                     const HostPrograms& programs) {
   for (const auto& [name, content] : programs.files) {
@@ -381,6 +382,12 @@ void check_programs(const Scenario& scenario, const std::string& pointer,
                           "LD_ or SIMBENCH_",
                           shown_text(name)));
     }
+  }
+  for (std::size_t i = 0; i < programs.readable.size(); ++i) {
+    if (programs.readable[i].starts_with('/')) continue;
+    fail_at(
+        scenario, fmt::format("{}/readable/{}", pointer, i),
+        fmt::format("found \"{}\", allowed: an absolute path", shown_text(programs.readable[i])));
   }
 }
 

@@ -134,10 +134,13 @@ void on_fault(int signal, siginfo_t* info, void* stopped) {
   if (fault_action.sa_handler != SIG_DFL && fault_action.sa_handler != SIG_IGN) {
     return fault_action.sa_handler(signal);
   }
-  // The fault comes again, and ends the program.
+  const bool is_raised = info->si_code <= 0;
+  if (is_raised && fault_action.sa_handler == SIG_IGN) return;
+  // A fault comes again, and ends the program.
   struct sigaction usual {};
   usual.sa_handler = SIG_DFL;
   SIMBENCH_REAL(sigaction)(SIGSEGV, &usual, nullptr);
+  if (is_raised) raise(SIGSEGV);
 }
 
 // 16 bytes that the kernel took from its chance.

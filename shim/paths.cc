@@ -43,13 +43,14 @@ void make_folders(char* path) {
   errno = before;
 }
 
-bool is_there(const char* path) {
+// Folders of the machine's stay what they are, whatever files are given in their place.
+bool is_there(const char* path, bool may_be_folder) {
   const int before = errno;
   struct stat status {};
   const bool found =
       machine_call(SYS_newfstatat, AT_FDCWD, path, &status, AT_SYMLINK_NOFOLLOW) == 0;
   errno = before;
-  return found;
+  return found && (may_be_folder || !S_ISDIR(status.st_mode));
 }
 
 }  // namespace
@@ -75,7 +76,7 @@ OwnPath::OwnPath(const char* path, Use use) : text_(path) {
   const int written = snprintf(room_, sizeof room_, "%s%s", folder, rest);
   if (written < 0 || static_cast<std::size_t>(written) >= sizeof room_) return;
   const bool creates = use == Use::kCreates && is_own(path);
-  if (is_folder || creates || is_there(room_)) text_ = room_;
+  if (is_folder || creates || is_there(room_, is_own(path))) text_ = room_;
   if (creates) make_folders(room_);
 }
 

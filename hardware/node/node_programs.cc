@@ -15,6 +15,7 @@
 #include "hardware/net/notice.h"
 #include "hardware/node/program_clock.h"
 #include "processes/child.h"
+#include "processes/lesser_user.h"
 #include "processes/placeholders.h"
 #include "processes/requests.h"
 #include "recording/text_fields.h"
@@ -109,6 +110,7 @@ std::string NodePrograms::make_folder(PeerId host) const {
   std::filesystem::path folder = settings_.log_folder.empty()
                                      ? std::filesystem::path(temporary_.path())
                                      : std::filesystem::absolute(settings_.log_folder);
+  processes::let_pass(temporary_.path());
   folder /= fmt::format("host{}", host);
   return processes::make_folder(
       folder, settings_.programs,
@@ -127,7 +129,8 @@ Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> comm
                           .environment = processes::fill(settings_.programs.environment, places),
                           .folder = folder,
                           .log_name = scenarios::program_name(command),
-                          .shim = settings_.shim};
+                          .shim = settings_.shim,
+                          .readable = processes::fill(settings_.programs.readable, places)};
     programs.start(std::move(child));
   }
   std::optional<Nanoseconds> duration;

@@ -19,7 +19,6 @@
 namespace simbench::sim {
 namespace {
 
-using processes::ThreadLink;
 using shim::Call;
 
 constexpr std::size_t kMostNote = 400;  // bytes of it in the row's note
@@ -74,8 +73,8 @@ Process::Surroundings Program::for_processes() {
 }
 
 ProgramThread& Program::add_thread(Process& process, std::int32_t number,
-                                   std::unique_ptr<ThreadLink> link) {
-  ProgramThread& thread = threads_.emplace_back(around_.host, process, number, std::move(link));
+                                   std::unique_ptr<Child> end) {
+  ProgramThread& thread = threads_.emplace_back(around_.host, process, number, std::move(end));
   around_.processes.add_thread(thread);
   return thread;
 }
@@ -95,15 +94,16 @@ void Program::stop() {
   fail("");
 }
 
+Child& Program::end_of(ProgramThread& thread) {
+  return thread.end != nullptr ? *thread.end : child_;
+}
+
 std::optional<ChildRequest> Program::next(ProgramThread& thread) {
   std::function<bool()> is_asleep;
   if (threads_.size() > 1) is_asleep = [&thread] { return waits_for_machine(thread); };
-  if (thread.link == nullptr) return child_.next(is_asleep);
-  std::optional<ChildRequest> request = thread.link->next(is_asleep);
-  if (!request && thread.link->was_too_slow()) {
-    fail(fmt::format("computed for {} s without waiting",
-                     std::chrono::duration<double>(child_.patience()).count()));
-  }
+  Child& end = end_of(thread);
+  std::optional<ChildRequest> request = end.next(is_asleep);
+  if (thread.end != nullptr && !end.excess().empty()) fail(end.excess());
   return request;
 }
 
@@ -115,19 +115,11 @@ void Program::reply(ProgramThread& thread, const Answer& answer) {
     error |= shim::kHasSignals;
   }
   if (around_.processes.has_watchers()) error |= shim::kIsWatched;
-  if (thread.link == nullptr) {
-    child_.reply(answer.value, error, answer.data);
-  } else {
-    thread.link->reply(answer.value, error, answer.data);
-  }
+  end_of(thread).reply(answer.value, error, answer.data);
 }
 
 bool Program::goes_on(const ProgramThread& thread) const {
   return !is_over_ && !thread.process->has_ended;
-}
-
-bool Program::was_asleep(const ProgramThread& thread) const {
-  return thread.link != nullptr ? thread.link->was_asleep() : child_.was_asleep();
 }
 
 Task<void> Program::wait_for_activity(ProgramThread& thread) {
@@ -142,7 +134,7 @@ Task<void> Program::wait_for_activity(ProgramThread& thread) {
 Task<void> Program::run(ProgramThread& thread) {
   while (goes_on(thread)) {
     std::optional<ChildRequest> request = next(thread);
-    if (!request && was_asleep(thread)) {
+    if (!request && end_of(thread).thread_link().was_asleep()) {
       co_await wait_for_activity(thread);
       continue;
     }
@@ -241,18 +233,33 @@ Task<Process::Answer> Program::answer(ProgramThread& thread, ChildRequest reques
 
 // Threads and processes.
 
+void Program::count_made() {
+  const TrueTime now = around_.host.true_now();
+  if (now >= counted_since_ + Nanoseconds(std::chrono::seconds(1))) {
+    counted_since_ = now;
+    made_ = 0;
+  }
+  if (++made_ > kMostMade) {
+    throw BadRequest(fmt::format("makes more than {} threads and processes a second", kMostMade));
+  }
+}
+
 Task<Process::Answer> Program::announce(ProgramThread& maker, ChildRequest request) {
   if (request.passed < 0) throw BadRequest("made a thread or process without a link");
-  auto link = std::make_unique<ThreadLink>(request.passed, child_.patience());
+  auto end = std::make_unique<Child>(Child::Settings{.command = {"a thread"},
+                                                     .patience = child_.patience(),
+                                                     .link = request.passed,
+                                                     .use = child_.use()});
+  count_made();
   if (around_.processes.threads() >= HostProcesses::kMost) co_return Answer{.error = EAGAIN};
   const std::int32_t number = around_.processes.take_number();
   Process* process = maker.process;
   if (request.head.call == Call::kNewProcess) {
-    link->ask_for_sender();
+    end->thread_link().ask_for_sender();
     process = &processes_.emplace_back(*maker.process, number);
     around_.processes.add(*process);
   }
-  ProgramThread& thread = add_thread(*process, number, std::move(link));
+  ProgramThread& thread = add_thread(*process, number, std::move(end));
   thread.signals_seen = process->signals();
   // Its own coroutine: it begins when the maker hands over.
   boost::asio::co_spawn(co_await boost::asio::this_coro::executor, run(thread),
@@ -264,8 +271,8 @@ Task<Process::Answer> Program::announce(ProgramThread& maker, ChildRequest reque
 
 Process::Answer Program::start(const ChildRequest& request) {
   for (const ProgramThread& each : threads_) {
-    if (each.number == request.head.a && each.link != nullptr && request.head.b != 0) {
-      each.link->await_request();
+    if (each.number == request.head.a && each.end != nullptr && request.head.b != 0) {
+      each.end->thread_link().await_request();
     }
   }
   return {};

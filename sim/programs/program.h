@@ -46,6 +46,8 @@ namespace simbench::sim {
 
 class Program {
  public:
+  static constexpr int kMostMade = 2000;
+
   // What belongs to the host; it must outlive the program.
   struct Surroundings {
     SimHost& host;
@@ -71,12 +73,10 @@ class Program {
   using Answer = Process::Answer;
 
   Process::Surroundings for_processes();
-  ProgramThread& add_thread(Process& process, std::int32_t number,
-                            std::unique_ptr<processes::ThreadLink> link);
+  ProgramThread& add_thread(Process& process, std::int32_t number, std::unique_ptr<Child> end);
   std::optional<ChildRequest> next(ProgramThread& thread);
   void reply(ProgramThread& thread, const Answer& answer);
-  // Whether the last next() found it waiting for the machine.
-  bool was_asleep(const ProgramThread& thread) const;
+  Child& end_of(ProgramThread& thread);
   Task<void> wait_for_activity(ProgramThread& thread);
   // Until the thread, its process or the program has ended.
   Task<void> run(ProgramThread& thread);
@@ -88,6 +88,7 @@ class Program {
 
   // These throw for what is no request.
   Task<Answer> answer(ProgramThread& thread, ChildRequest request);
+  void count_made();
   Task<Answer> announce(ProgramThread& maker, ChildRequest request);
   Answer start(const ChildRequest& request);
   Task<Answer> hello(ProgramThread& thread, ChildRequest request);
@@ -108,6 +109,8 @@ class Program {
   std::list<ProgramThread> threads_{};
   std::string reason_;
   std::string ending_;
+  TrueTime counted_since_;
+  int made_ = 0;
   bool is_over_ = false;
   bool is_stopped_ = false;
 };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
+#include "processes/lesser_user.h"
 #include "processes/placeholders.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/program.h"
@@ -34,7 +35,7 @@ class RunningPrograms {
       : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
 
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder) {
+             const std::string& folder, std::shared_ptr<processes::RunUse> run) {
     const std::size_t number = programs_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -44,7 +45,9 @@ class RunningPrograms {
         .environment = fill(settings.programs.environment, places),
         .folder = folder,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
-        .shim = settings.shim};
+        .shim = settings.shim,
+        .readable = fill(settings.programs.readable, places),
+        .run = std::move(run)};
     if (settings.patience) child.patience = *settings.patience;
     programs_.emplace_back(Program::Surroundings{host_, network_, kernel_, card_, processes_},
                            child);
@@ -118,6 +121,7 @@ std::string ProgramSync::make_folder(SimHost& host) {
   std::filesystem::path folder;
   if (settings_.log_folder.empty()) {
     if (temporary_ == nullptr) temporary_ = std::make_unique<TemporaryFolder>();
+    processes::let_pass(temporary_->path());
     folder = temporary_->path();
   } else {
     folder = std::filesystem::absolute(settings_.log_folder) / settings_.pipeline /
@@ -140,7 +144,7 @@ Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> comma
   RunningPrograms programs(own, settings_.hosts);
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder);
+    programs.start(command, settings_, folder, run_);
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();

@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "processes/program_use.h"
 #include "recording/temporary_folder.h"
 #include "scenarios/scenario.h"
 
@@ -67,6 +68,8 @@ class ProgramSync final : public HostSync {
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
+  std::shared_ptr<processes::RunUse> run_ = std::make_shared<processes::RunUse>();
+  std::set<std::string> remarks_;                    // on how programs run
   std::map<std::string, std::set<PeerId>> endings_;  // the hosts whose programs ended so
 };
 

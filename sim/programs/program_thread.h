@@ -14,7 +14,7 @@
 #include <optional>
 #include <utility>
 
-#include "processes/thread_link.h"
+#include "processes/child.h"
 #include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
@@ -32,15 +32,15 @@ struct ProgramThread {
   };
 
   ProgramThread(SimHost& host, Process& of, std::int32_t thread_number,
-                std::unique_ptr<processes::ThreadLink> own_link)
+                std::unique_ptr<processes::Child> own_end)
       : process(&of),
         number(thread_number),
-        link(std::move(own_link)),
+        end(std::move(own_end)),
         woken(host.world().context, host.name(fmt::format("program {} waits", thread_number))) {}
 
   Process* process;
   std::int32_t number;
-  std::unique_ptr<processes::ThreadLink> link;  // null: of the program's first thread
+  std::unique_ptr<processes::Child> end;  // the world's, of its link
   WaitPoint woken;
   pid_t machine = -1;  // what the machine calls it, as it says itself
   std::uint64_t signals_seen = 0;

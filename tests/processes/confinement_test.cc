@@ -7,15 +7,19 @@
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +28,8 @@
 #include <vector>
 
 #include "processes/child.h"
+#include "processes/program_use.h"
+#include "recording/distrusted_folder.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::processes {
@@ -35,6 +41,9 @@ using testing::StartsWith;
 
 class ConfinementTest : public testing::Test {
  protected:
+  // Root's programs are nobody's, who is to get there.
+  ConfinementTest() { chmod(folder_.path().c_str(), 0711); }
+
   Child::Settings settings(std::vector<std::string> words) const {
     words.insert(words.begin(), std::string(SIMBENCH_PROGRAMS) + "/simbench_escapes");
     return {.command = std::move(words),
@@ -112,6 +121,54 @@ TEST_F(ConfinementTest, ItWritesInItsFolderOnly) {
   EXPECT_FALSE(std::filesystem::exists("/usr/outside.txt"));
 }
 
+// Everybody may read and write it, so that nothing but the rules is in the way.
+TEST_F(ConfinementTest, ItReadsWhatIsNamed) {
+  if (!has_landlock()) GTEST_SKIP() << "this kernel has no Landlock";
+  const ScratchFolder other;
+  const std::string file = other.write("sub/file", "text");
+  for (const std::string& path : {other.path().string(), other / "sub", file}) {
+    chmod(path.c_str(), 0777);
+  }
+  const auto output = [&](std::vector<std::string> readable) {
+    Child::Settings own = settings({"read", file});
+    own.command.pop_back();  // a word that names a file may be read
+    own.environment = {{"FILE", file}};
+    own.readable = std::move(readable);
+    note_of(own);
+    return folder_.content("program0.log");
+  };
+  const std::string can_read = "read: succeeded\nwrite: EACCES\nstill there\n";
+  EXPECT_EQ(output({}), "read: EACCES\nwrite: EACCES\nstill there\n");
+  EXPECT_EQ(output({file}), can_read);
+  EXPECT_EQ(output({other / "sub"}), can_read);
+  EXPECT_EQ(output({other.path().string()}), can_read);
+  EXPECT_EQ(output({"/nowhere", other / "sub/missing"}),
+            "read: EACCES\nwrite: EACCES\nstill there\n");
+  note_of(settings({"read", file}));
+  EXPECT_EQ(folder_.content("program0.log"), "read: succeeded\nwrite: EACCES\nstill there\n");
+}
+
+// Its program lies where nobody may go: it is root then, without root's rights.
+TEST_F(ConfinementTest, RootsProgramsAreNobodys) {
+  if (geteuid() != 0) GTEST_SKIP() << "for root";
+  EXPECT_EQ(why_root(settings({"user"})), "");
+  EXPECT_THAT(output_of({"user"}), StartsWith("Uid:\t65534\t65534\t65534\t65534\n"
+                                              "Gid:\t65534\t65534\t65534\t65534\n"
+                                              "Groups:\t \n"));
+  const ScratchFolder closed;
+  Child::Settings own = settings({"user"});
+  own.program = closed / "program";
+  std::filesystem::copy(own.command.front(), own.program);
+  EXPECT_EQ(why_root(own),
+            "simbench_escapes runs as root, without root's capabilities, and not as "
+            "nobody: nobody may not enter or read " +
+                closed.path().string());
+  EXPECT_EQ(note_of(own), "simbench_escapes: exited with status 0: still there");
+  EXPECT_THAT(folder_.content("program0.log"),
+              testing::AllOf(StartsWith("Uid:\t0\t0\t0\t0\nGid:\t0\t0\t0\t0\n"),
+                             HasSubstr("CapEff:\t0000000000000000\nCapBnd:\t0000000000000000\n")));
+}
+
 TEST_F(ConfinementTest, ItHasNoNeighbours) {
   const int inherited = open("/dev/null", O_RDONLY);  // not marked to be closed
   EXPECT_EQ(output_of({"neighbours"}),
@@ -166,6 +223,26 @@ TEST_F(ConfinementTest, OutputMemoryAndPatienceHaveLimits) {
   EXPECT_EQ(note_of(patient), "simbench_escapes: computed for 0.1 s without waiting");
 }
 
+// As those of a program's own children are.
+TEST_F(ConfinementTest, ALinkThatIsThereHasTheLimitsOfItsProgram) {
+  for (const char* name : {"one", "two", "three"}) folder_.write(name, "");
+  const auto ending = [this](std::size_t most) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    Child child({.command = {"helper"},
+                 .patience = std::chrono::milliseconds(200),
+                 .link = ends[0],
+                 .use = std::make_shared<ProgramUse>(
+                     open_folder_in(AT_FDCWD, folder_.path().c_str()), getpid(),
+                     FolderLimits{.files = most}, std::make_shared<RunUse>())});
+    EXPECT_FALSE(child.next());
+    close(ends[1]);
+    return child.ending();
+  };
+  EXPECT_EQ(ending(2), "helper: made more than 2 files");
+  EXPECT_EQ(ending(1000), "helper: computed for 0.2 s without waiting");
+}
+
 TEST_F(ConfinementTest, WhatCannotBeStartedSaysWhy) {
   Child::Settings missing = settings({});
   missing.command = {folder_ / "missing"};
@@ -175,7 +252,7 @@ TEST_F(ConfinementTest, WhatCannotBeStartedSaysWhy) {
   EXPECT_EQ(note_of(missing), "missing: " + missing.folder +
                                   " cannot be made a program's only folder: No such file or "
                                   "directory");
-  EXPECT_THROW(Confinement(missing.folder), ConfinementError);
+  EXPECT_THROW(Confinement({.folder = missing.folder}), ConfinementError);
 }
 
 // As on a kernel that has none.
@@ -210,6 +287,7 @@ TEST_F(ConfinementTest, WithoutLandlockRootRunsNoPrograms) {
 
 // A child of `parent` that is no zombie; 0: none.
 pid_t child_of(pid_t parent) {
+  if (parent == 0) return 0;
   const std::string id = std::to_string(parent);
   const std::string children = content("/proc/" + id + "/task/" + id + "/children");
   return children.empty() ? 0 : std::stoi(children);
@@ -237,7 +315,7 @@ TEST_F(ConfinementTest, NoneIsLeftOfAWorldThatIsKilled) {
     _exit(0);
   }
   pid_t program = 0;
-  ASSERT_TRUE(comes_true([&] { return (program = child_of(world)) != 0; }));
+  ASSERT_TRUE(comes_true([&] { return (program = child_of(child_of(world))) != 0; }));
   ASSERT_TRUE(comes_true([&] { return folder_.names().size() == 1; })) << "it runs";
   kill(world, SIGKILL);
   waitpid(world, nullptr, 0);

@@ -31,18 +31,18 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "tests/programs/attempts.h"
+
 namespace {
 
-const char* path = "";
+using attempts::Attempt;
+using attempts::path;
+using attempts::say;
+
 timespec a_millisecond{.tv_sec = 0, .tv_nsec = 1'000'000};
 timespec a_day{.tv_sec = 86'400, .tv_nsec = 0};
 char no_word[] = "";
 char* no_words[] = {no_word, nullptr};
-
-void say(const char* name, long result) {
-  std::printf("%s: %s\n", name, result >= 0 ? "succeeded" : strerrorname_np(errno));
-  std::fflush(stdout);
-}
 
 // By the system call itself.
 
@@ -103,6 +103,22 @@ void files() {
   say("own", open("own.txt", O_WRONLY | O_CREAT, 0600));
   say("folder", mkdir("sub", 0700));
   say("move", std::rename("own.txt", "sub/own.txt"));
+}
+void read_named() {
+  const char* variable = std::getenv("FILE");
+  const char* file = variable != nullptr ? variable : path;
+  say("read", open(file, O_RDONLY));
+  say("write", open(file, O_WRONLY));
+}
+// Who it is for the kernel.
+void user() {
+  std::FILE* status = std::fopen("/proc/self/status", "r");
+  char line[256];
+  while (std::fgets(line, sizeof line, status) != nullptr) {
+    for (const char* name : {"Uid", "Gid", "Groups", "Cap"}) {
+      if (std::strncmp(line, name, std::strlen(name)) == 0) std::fputs(line, stdout);
+    }
+  }
 }
 void neighbours() {
   say("io_uring", syscall(SYS_io_uring_setup, 1, nullptr));
@@ -179,11 +195,6 @@ void many_threads() {
   pthread_join(thread, nullptr);
 }
 
-struct Attempt {
-  const char* name;
-  void (*make)();
-};
-
 constexpr Attempt kAttempts[] = {{"clock_settime", set_clock},
                                  {"settimeofday", set_day},
                                  {"adjtimex", adjust},
@@ -208,6 +219,8 @@ constexpr Attempt kAttempts[] = {{"clock_settime", set_clock},
                                  {"catch", catch_it},
                                  {"block", block_it},
                                  {"files", files},
+                                 {"read", read_named},
+                                 {"user", user},
                                  {"neighbours", neighbours},
                                  {"rights", rights},
                                  {"own_signals", own_signals},
@@ -221,14 +234,4 @@ constexpr Attempt kAttempts[] = {{"clock_settime", set_clock},
 
 }  // namespace
 
-int main(int count, char** words) {
-  if (count > 2) path = words[2];
-  for (const Attempt& attempt : kAttempts) {
-    if (count < 2 || std::strcmp(words[1], attempt.name) != 0) continue;
-    attempt.make();
-    std::puts("still there");
-    return 0;
-  }
-  std::fputs("usage: escapes ATTEMPT [PATH]\n", stderr);
-  return 2;
-}
+int main(int count, char** words) { return attempts::make(kAttempts, count, words); }

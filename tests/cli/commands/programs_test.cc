@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -90,6 +91,35 @@ TEST_F(ProgramsCommand, AProgramThatEndsIsANoteOfItsRow) {
               AllOf(HasSubstr("What went wrong"), HasSubstr("false: exited with status 1")));
 }
 
+// It ends with the file's text, or with what Python says of one that it may not read.
+TEST_F(ProgramsCommand, AFileOfTheMachineIsReadWhereItIsNamed) {
+  file("note.txt", "the text of the note");
+  const auto ending = [this](const Json& readable) {
+    const Json command = Json::array(
+        {"/usr/bin/python3", "-c", "import os; print(open(os.environ['NOTE']).read())"});
+    write("one.json", {{"master", Json::array({command})},
+                       {"slave", Json::array({command})},
+                       {"environment", {{"NOTE", "{here}/note.txt"}}},
+                       {"readable", readable}});
+    return clocks({"--program", "one=one.json"}).out;
+  };
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "no python3";
+  EXPECT_THAT(ending(Json::array()), HasSubstr("PermissionError"));
+  EXPECT_THAT(ending({"{here}/note.txt"}), HasSubstr("exited with status 0: the text of the note"));
+  EXPECT_THAT(ending({"{here}"}), HasSubstr("exited with status 0: the text of the note"));
+}
+
+// Its programs' files lie where nobody may not go.
+TEST_F(ProgramsCommand, RootIsToldOfProgramsThatAreNotNobodys) {
+  if (geteuid() != 0) GTEST_SKIP() << "for root";
+  const ProgramResult closed = clocks({"--program", "chronyd", "--program-log", "logs"});
+  EXPECT_THAT(closed.err, HasSubstr("note: chronyd runs as root, without root's capabilities, and "
+                                    "not as nobody: nobody may not enter or read " +
+                                    folder().string()));
+  const ProgramResult open = clocks({"--program", "chronyd"});
+  EXPECT_THAT(open.err, Not(HasSubstr("note:")));
+}
+
 TEST_F(ProgramsCommand, APatienceThatIsNoNumberIsRefused) {
   ProgramOptions options;
   options.environment = {"SIMBENCH_PATIENCE_S=long"};
@@ -156,6 +186,13 @@ TEST_F(ProgramsCommand, FilesThatAreNoPipelines) {
   EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
                           "environment": {"LD_PRELOAD": "b"}}}})"),
               HasSubstr("LD_"));
+  EXPECT_THAT(
+      refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
+                          "readable": ["/etc/ntp", "keys"]}}})"),
+      HasSubstr("/host_sync/program/readable/1: found \"keys\", allowed: an absolute path"));
+  EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
+                          "readable": "/etc/ntp"}}})"),
+              HasSubstr("/host_sync/program/readable"));
   const ProgramResult missing = clocks({"--program", "bad=there_is_none.json"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, HasSubstr("there_is_none.json"));
