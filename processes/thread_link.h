@@ -3,7 +3,7 @@
 // Nothing that comes over it is trusted: is_whole says whether a request is as long as it says. A
 // descriptor is taken with the requests that pass one; of others it is closed.
 //
-//   ThreadLink link(descriptor, std::chrono::seconds(30));
+//   ThreadLink link(7, std::chrono::seconds(30));
 //   const auto goes_on = [](ThreadLink::Waited waited) { return waited < std::chrono::seconds(30);
 //   }; while (link.next(goes_on)) link.reply(0, 0, {});
 //
