@@ -27,6 +27,7 @@
 #include <utility>
 
 #include "processes/confinement.h"
+#include "recording/text_fields.h"
 
 namespace simbench::processes {
 namespace {
@@ -207,12 +208,21 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
   sendmsg(link_, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
-std::string Child::ending(const std::string& reason) {
-  if (!obstacle_.empty()) return fmt::format("{}: {}", name_, obstacle_);
+std::string ProgramEnd::text() const {
+  return fmt::format("{}: {}{}{}", program, how, last_words.empty() ? "" : ": ", last_words);
+}
+
+ProgramEnd Child::end_of(const std::string& reason) {
+  ProgramEnd ended{.program = printable_name(name_)};
+  if (!obstacle_.empty()) {
+    ended.how = printable_name(obstacle_);
+    return ended;
+  }
   const std::string how = end();
-  const std::string said = last_line();
-  return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,
-                     said.empty() ? "" : ": " + said);
+  ended.how = printable_name(reason.empty() ? how : reason);
+  if (reason.empty()) ended.status = exit_status_;
+  ended.last_words = printable_name(last_line());
+  return ended;
 }
 
 std::string Child::end() {
@@ -232,6 +242,7 @@ std::string Child::end() {
     waitpid(process_, &status, 0);
   }
   process_ = -1;
+  if (ended_itself && !was_too_slow_ && WIFEXITED(status)) exit_status_ = WEXITSTATUS(status);
   return how_it_ended(ended_itself, status);
 }
 
@@ -264,9 +275,22 @@ std::string Child::how_it_ended(bool itself, int status) const {
                      has_asked_ ? "" : ", and the preloaded library was never loaded");
 }
 
+namespace {
+
+// Cut to what a row's note has room for, at the begin of a character.
+std::string cut(std::string line) {
+  constexpr std::size_t kMost = 300;
+  if (line.size() <= kMost) return line;
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U) --end;
+  return line.substr(0, end) + " ...";
+}
+
+}  // namespace
+
 // The log may be long, and need not have lines.
 std::string Child::last_line() const {
-  constexpr std::streamoff kMost = 400;
+  constexpr std::streamoff kMost = 4096;
   std::ifstream log(log_, std::ios::binary | std::ios::ate);
   if (!log) return "";
   const std::streamoff begin = std::max<std::streamoff>(0, log.tellg() - kMost);
@@ -274,9 +298,10 @@ std::string Child::last_line() const {
   std::string line;
   std::string last;
   while (std::getline(log, line)) {
-    if (!line.empty()) last = line;
+    const std::size_t end = line.find_last_not_of(" \t\r");
+    if (end != std::string::npos) last = line.substr(0, end + 1);
   }
-  return last;
+  return cut(std::move(last));
 }
 
 }  // namespace simbench::processes

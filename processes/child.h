@@ -25,7 +25,9 @@
 //
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
-//   print(child.ending());  // "chronyd: exited with status 1: Could not open configuration file"
+//   const ProgramEnd end = child.end_of();
+//   print(end.text());  // "chronyd: exited with status 1: Could not open configuration file"
+//   if (end.status == 0) print("it has done what it was asked to");
 #pragma once
 
 #include <sys/types.h>
@@ -49,6 +51,17 @@ struct ChildRequest {
   shim::Request head;
   Bytes data;
   bool is_whole = false;  // there is a head, and as much data as it says
+};
+
+// How a program ended. The texts are printable lines, whatever the program wrote.
+struct ProgramEnd {
+  std::string program{};        // its name, "chronyd"
+  std::string how{};            // "exited with status 1"
+  std::string last_words{};     // the last line of its output, cut; empty: it said nothing
+  std::optional<int> status{};  // its exit status; nothing: it did not exit by itself
+
+  // "chronyd: exited with status 1: Could not open configuration file".
+  std::string text() const;
 };
 
 class Child {
@@ -81,15 +94,17 @@ class Child {
   // The descriptor of its link; -1 if it could not be started.
   int link() const { return link_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
-  // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
-  // output.
-  std::string ending(const std::string& reason = "");
+  // Kills it if it still runs; says how it ended, or in place of that the reason for killing it. To
+  // be called once.
+  ProgramEnd end_of(const std::string& reason = "");
+  // The same as a text.
+  std::string ending(const std::string& reason = "") { return end_of(reason).text(); }
 
  private:
   // Returns why it cannot be started, or nothing.
   std::string start(const Settings& settings);
   void follow_thread();
-  // Returns how it ended.
+  // Returns how it ended, and sets its exit status.
   std::string end();
   std::string how_it_ended(bool itself, int status) const;
   std::string last_line() const;
@@ -104,6 +119,7 @@ class Child {
   Served served_;
   int cpu_ = -1;  // the one that it is bound to
   bool was_too_slow_ = false;
+  std::optional<int> exit_status_;
   Bytes buffer_;
 };
 

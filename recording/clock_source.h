@@ -52,6 +52,8 @@ class ClockSink {
   virtual void on_errors(TrueTime at, std::span<const double> errors_s) = 0;
   // How the synchronisation ended on a slave; of those that come to it late, twice.
   virtual void on_outcome(const SyncOutcome& /*outcome*/) {}
+  // A real program of a host ended too early.
+  virtual void on_program_failure(const ProgramFailure& /*failure*/) {}
   // As WorldObserver has it.
   virtual void on_message(const ObservedMessage& /*message*/) {}
 };

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kFrameKind = "frame";
 // The kinds of RecordingEvent, in its order.
 constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
-    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays"};
+    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays", "program"};
 static_assert(!kKinds.back().empty(), "every event has a kind");
 
 template <class Value, class Event>
@@ -110,6 +110,15 @@ void members(const auto& form, Any<SessionDelays> auto& delays) {
   form("t_d_ns", delays.t_d);
   form("get_ns", delays.get);
   form("set_ns", delays.set);
+}
+
+void members(const auto& form, Any<ProgramFailure> auto& failure) {
+  form("host", failure.host);
+  form("program", failure.program);
+  form("at_ns", failure.at);
+  form("how", failure.how);
+  form("last_words", failure.last_words);
+  form("log", failure.log);
 }
 
 constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamKind::kDepth),

@@ -124,13 +124,15 @@ struct ExchangeEvent {
 //   ExchangeEvent    an exchange of host synchronisation
 //   SyncOutcome      how host synchronisation ended on a slave
 //   SessionDelays    what a slave measured in a pass of a session of Algorithms 1 and 2, and added
+//   ProgramFailure   a real program of a host ended too early
 //   AlignmentReport  how far a steered camera is; steered captures only
 //   LedSighting      captures with a clock of LEDs only; after its frame, before the camera's next
 //
 // A new kind is a struct, a place here and its line of text (event_text.cc): what keeps, writes,
 // forwards and forks events takes it from there.
 using RecordingEvent = std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent,
-                                    SyncOutcome, AlignmentReport, LedSighting, SessionDelays>;
+                                    SyncOutcome, AlignmentReport, LedSighting, SessionDelays,
+                                    ProgramFailure>;
 
 // Handles an event by its type:
 //

@@ -12,6 +12,7 @@
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "evaluation/scoring/program_failures.h"
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/loader.h"
@@ -159,10 +160,12 @@ class ClockEvaluation {
     scored.seed.seed = seed;
     scored.seed.host_errors_ms = std::move(score.host_errors_ms);
     scored.seed.failures = std::move(score.failures);
+    scored.seed.program_failures = std::move(score.program_failures);
     scored.seed.cost = {.events = cost.events,
                         .simulated_seconds = to_seconds(span.duration + kMasterLostFor + kRecovery),
                         .trace_hash = cost.trace_hash,
                         .notes = host_sync->notes()};
+    void_score(scored.seed);
     scored.curves = std::move(score.curves);
     scored.hosts = {.to_truth = std::move(score.to_truth), .pairs = std::move(score.pairs)};
     if (seed == options_.first_seed) scored.readings = std::move(score.readings);

@@ -17,6 +17,7 @@
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/program_failures.h"
 #include "scenarios/calibration.h"
 #include "scenarios/camera_groups.h"
 #include "scenarios/document.h"
@@ -501,6 +502,7 @@ SeedScore captured_score(PipelineScorer& scorer, RecordingCost cost, std::uint64
   }
   std::ranges::move(score.cost.notes, std::back_inserter(cost.notes));
   score.cost = std::move(cost);
+  void_score(score);
   return score;
 }
 

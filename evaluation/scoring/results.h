@@ -51,6 +51,8 @@ struct SeedScore : MetricValues<double> {
   std::vector<PulseScore> pulses;         // with EvaluationOptions::keep_pulses
   std::vector<double> host_errors_ms;     // signed mean over the evaluated pulses, per host
   std::vector<SyncOutcome> failures;      // of host synchronisation, only those not synchronised
+  // Real programs that ended; where there is one the seed has no values (program_failures.h).
+  std::vector<ProgramFailure> program_failures{};
   std::vector<SessionDelays> sessions{};  // the last pass of each slave that reported one, by host
   RecordingCost cost;
 };
@@ -63,6 +65,11 @@ struct PublishedComparison {
   Percentile rmdv_percentile;
 };
 
+struct SeedProgramFailure {
+  std::uint64_t seed = 0;
+  ProgramFailure failure{};
+};
+
 // One pipeline over all seeds; metrics: evaluation/scoring/metrics.h.
 struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string pipeline;
@@ -70,7 +77,10 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string capture_alignment;  // empty: none
   std::string device_time;
   std::string gathering;
-  std::string model;     // of real programs: the pipeline that models them; empty: none
+  bool is_of_programs = false;  // its host_sync is real programs
+  std::string model;            // then: the pipeline that models them; empty: none
+  // Of all seeds, in their order: the row has failed.
+  std::vector<SeedProgramFailure> program_failures{};
   bool offline = false;  // device_time needs the whole recording
   // The weakest of the seeds that were recorded; kNone if none was.
   GroundTruth ground_truth = GroundTruth::kSimulation;

@@ -47,6 +47,8 @@ class KernelClock {
   Task<Answer> adjust(timex request);
   // clock_settime().
   Task<void> set(HostTime reading);
+  // Whether a program has set or steered the clock.
+  bool was_steered() const { return kernel_.was_steered(); }
 
  private:
   SimHost& host_;

@@ -15,8 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "recording/text_fields.h"
-
 namespace simbench::sim {
 namespace {
 
@@ -84,8 +82,8 @@ Task<void> Process::serve() {
     co_await close_streams();
     close_sockets();
   }
-  const std::string how = child_.ending(ending_);
-  if (!is_stopped_) ending_ = printable_name(how);
+  end_ = child_.end_of(ending_);
+  if (!is_stopped_) ending_ = end_.text();
 }
 
 void Process::stop() {

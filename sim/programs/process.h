@@ -69,6 +69,8 @@ class Process {
   void stop();
   // Why it ended by itself, one line; empty while it runs, and once it is stopped.
   const std::string& ending() const { return ending_; }
+  // The same in its parts.
+  const processes::ProgramEnd& end() const { return end_; }
 
  private:
   struct Answer {
@@ -134,6 +136,7 @@ class Process {
   std::map<int, ProcessTimer> signal_timers_;  // by the shim's number
   Child child_;
   std::string ending_;
+  processes::ProgramEnd end_;
   bool is_stopped_ = false;
   TrueTime counted_since_;
   std::uint64_t asked_ = 0;

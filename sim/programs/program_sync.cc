@@ -10,6 +10,7 @@
 
 #include "algorithms/host_sync/join.h"
 #include "processes/placeholders.h"
+#include "processes/program_endings.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/process.h"
 
@@ -30,11 +31,24 @@ HostPlaces places_of(SimHost& host) {
 // The programs of one host.
 class RunningPrograms {
  public:
-  RunningPrograms(SimHost& host, std::size_t hosts)
-      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
+  // `on_gone` is called when the run is over.
+  using OnGone = std::function<void(const processes::ProgramEndings&, bool clock_was_set)>;
 
+  RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, OnGone on_gone)
+      : host_(host),
+        hosts_(hosts),
+        network_(host, hosts),
+        kernel_(host),
+        card_(host),
+        endings_(host, programs),
+        on_gone_(std::move(on_gone)) {}
+  RunningPrograms(const RunningPrograms&) = delete;
+  RunningPrograms& operator=(const RunningPrograms&) = delete;
+  ~RunningPrograms() { on_gone_(endings_, kernel_.was_steered()); }
+
+  // `kept`: the folder as the user has named it; empty: it is not kept.
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder) {
+             const std::string& folder, const std::string& kept) {
     const std::size_t number = processes_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -46,13 +60,12 @@ class RunningPrograms {
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim};
     if (settings.patience) child.patience = *settings.patience;
+    logs_.push_back(kept.empty() ? "" : fmt::format("{}/{}", kept, child.log_name));
     processes_.emplace_back(host_, network_, kernel_, card_, child,
                             static_cast<std::uint32_t>(number));
   }
 
-  // `on_end` gets the last words of the first program that ends by itself.
-  Task<void> run(std::optional<Nanoseconds> duration,
-                 std::function<void(const std::string&)> on_end) {
+  Task<void> run(std::optional<Nanoseconds> duration) {
     std::vector<Task<void>> tasks;
     for (PeerId peer = 0; peer < hosts_; ++peer) {
       if (peer == host_.id()) continue;
@@ -61,19 +74,19 @@ class RunningPrograms {
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
-    for (Process& process : processes_) tasks.push_back(serve(process, on_end));
+    for (std::size_t i = 0; i < processes_.size(); ++i) tasks.push_back(serve(i));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
   }
 
  private:
-  Task<void> serve(Process& process, std::function<void(const std::string&)> on_end) {
+  Task<void> serve(std::size_t number) {
+    Process& process = processes_[number];
     const TrueTime begin = host_.true_now();
     co_await process.serve();
-    if (process.ending().empty() || std::exchange(has_failed_, true)) co_return;
-    const double after_s = to_seconds(host_.true_now() - begin);
-    on_end(after_s < 1 ? process.ending()
-                       : fmt::format("after {:.0f} s {}", after_s, process.ending()));
+    if (process.ending().empty()) co_return;  // it was stopped
+    endings_.add(process.end(), {.at = host_.true_now() - begin, .log = logs_[number]},
+                 kernel_.was_steered());
   }
 
   Task<void> stop_after(Nanoseconds duration) {
@@ -87,7 +100,9 @@ class RunningPrograms {
   KernelClock kernel_;
   CardClock card_;
   std::deque<Process> processes_;
-  bool has_failed_ = false;
+  std::vector<std::string> logs_;  // by process
+  processes::ProgramEndings endings_;
+  OnGone on_gone_;
 };
 
 SimHost& simulated(Host& host) {
@@ -105,12 +120,18 @@ std::optional<Nanoseconds> ProgramSync::warm_up() const {
 }
 
 std::vector<std::string> ProgramSync::notes() const {
-  std::vector<std::string> notes;
-  for (const auto& [ending, hosts] : endings_) {
-    notes.push_back(fmt::format("{} {}: {}", hosts.size() == 1 ? "host" : "hosts",
-                                fmt::join(hosts, ", "), ending));
+  std::vector<std::string> notes = notes_;
+  if (!unset_.empty()) {
+    notes.push_back(fmt::format("{} {}: no program has set the clock, which ran free",
+                                unset_.size() == 1 ? "host" : "hosts", fmt::join(unset_, ", ")));
   }
   return notes;
+}
+
+std::string ProgramSync::kept_folder(const SimHost& host) const {
+  if (settings_.log_folder.empty()) return "";
+  return fmt::format("{}/{}/seed{}/host{}", settings_.log_folder, settings_.pipeline,
+                     host.world().run_seed, host.id());
 }
 
 std::string ProgramSync::make_folder(SimHost& host) {
@@ -118,32 +139,28 @@ std::string ProgramSync::make_folder(SimHost& host) {
   if (settings_.log_folder.empty()) {
     if (temporary_ == nullptr) temporary_ = std::make_unique<TemporaryFolder>();
     folder = temporary_->path();
+    folder /= fmt::format("host{}", host.id());
   } else {
-    folder = std::filesystem::absolute(settings_.log_folder) / settings_.pipeline /
-             fmt::format("seed{}", host.world().run_seed);
+    folder = std::filesystem::absolute(kept_folder(host));
   }
-  folder /= fmt::format("host{}", host.id());
   return processes::make_folder(folder, settings_.programs, places_of(host));
-}
-
-void ProgramSync::fail(Host& host, const std::string& ending) {
-  endings_[ending].insert(host.id());
-  host.report_outcome({.slave = host.id(),
-                       .synchronised = false,
-                       .passes = 0,
-                       .message = fmt::format("host {}: {}", host.id(), ending)});
 }
 
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
-  RunningPrograms programs(own, settings_.hosts);
+  const auto on_gone = [this, id = host.id()](const processes::ProgramEndings& endings,
+                                              bool clock_was_set) {
+    notes_.insert(notes_.end(), endings.notes().begin(), endings.notes().end());
+    if (id != 0 && !clock_was_set && !endings.has_failed()) unset_.insert(id);
+  };
+  RunningPrograms programs(own, settings_.hosts, commands.size(), on_gone);
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder);
+    programs.start(command, settings_, folder, kept_folder(own));
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
-  co_await programs.run(duration, [this, &host](const std::string& ending) { fail(host, ending); });
+  co_await programs.run(duration);
 }
 
 Task<void> ProgramSync::run_master(Host& host, std::vector<PeerId> /*slaves*/) {

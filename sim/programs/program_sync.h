@@ -6,8 +6,9 @@
 // their placeholders filled in (processes/placeholders.h), and what the programs print goes to
 // "0_chronyd.log", by number and name.
 //
-// The first program of a host that ends is the host's failure, and a note with its last words;
-// nobody says that a host is synchronised.
+// A program that ends by itself may be the host's failure, or have done its work
+// (processes/program_endings.h); of programs that run on, nobody says that their host is
+// synchronised. After the run notes() has the slaves whose clocks nobody ever set.
 //
 // Only one process runs at a time, and time moves only when all wait: the same scenario and seed
 // give the same bytes. For the simulated world only: other hosts are a std::logic_error.
@@ -63,11 +64,13 @@ class ProgramSync final : public HostSync {
   Task<void> run(Host& host, std::vector<scenarios::HostPrograms::Command> commands);
   // Empty, and made.
   std::string make_folder(SimHost& host);
-  void fail(Host& host, const std::string& ending);
+  // Of the host's log folder, as the user has named it; empty: nobody keeps it.
+  std::string kept_folder(const SimHost& host) const;
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
-  std::map<std::string, std::set<PeerId>> endings_;  // the hosts whose programs ended so
+  std::vector<std::string> notes_;
+  std::set<PeerId> unset_;  // slaves whose clocks nobody set in the run, and that did not fail
 };
 
 }  // namespace simbench::sim

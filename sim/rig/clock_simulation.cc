@@ -25,6 +25,9 @@ class OutcomesOnly final : public RecordingSink {
   void on_frames(std::span<const FrameRecord>, std::span<const FrameTruth>) override {}
   void on_event(const RecordingEvent& event) override {
     if (const auto* outcome = std::get_if<SyncOutcome>(&event)) sink_.on_outcome(*outcome);
+    if (const auto* failure = std::get_if<ProgramFailure>(&event)) {
+      sink_.on_program_failure(*failure);
+    }
   }
 
  private:
