@@ -283,7 +283,7 @@ std::string cut(std::string line) {
   if (line.size() <= kMost) return line;
   std::size_t end = kMost;
   while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U) --end;
-  return line.substr(0, end) + " ...";
+  return line.substr(0, end) + " [...]";
 }
 
 }  // namespace

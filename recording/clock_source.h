@@ -25,6 +25,7 @@
 
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
+#include "recording/share_done.h"
 #include "recording/true_time.h"
 #include "recording/world_observer.h"
 
@@ -41,6 +42,7 @@ struct ClockRequest {
   Nanoseconds master_lost_for{};  // from `duration` on nobody reaches the master; 0: never
   Nanoseconds recovery{};         // after that
   const std::atomic<bool>* cancel = nullptr;
+  ShareDone share_done{};  // empty: nobody asks
 };
 
 class ClockSink {

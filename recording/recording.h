@@ -41,6 +41,7 @@
 #include "algorithms/ports/clock_adjustment.h"
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
+#include "recording/share_done.h"
 #include "recording/true_time.h"
 #include "scenarios/choices.h"
 
@@ -130,9 +131,9 @@ struct ExchangeEvent {
 //
 // A new kind is a struct, a place here and its line of text (event_text.cc): what keeps, writes,
 // forwards and forks events takes it from there.
-using RecordingEvent = std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent,
-                                    SyncOutcome, AlignmentReport, LedSighting, SessionDelays,
-                                    ProgramFailure>;
+using RecordingEvent =
+    std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent, SyncOutcome,
+                 AlignmentReport, LedSighting, SessionDelays, ProgramFailure>;
 
 // Handles an event by its type:
 //
@@ -202,6 +203,7 @@ struct RecordingRequest {
   // Once true, a simulated world ends with RecordingCancelled; outlives the call. A signal handler
   // may set it.
   const std::atomic<bool>* cancel = nullptr;
+  ShareDone share_done{};  // of a simulated world; empty: nobody asks
 };
 
 // The cost of the recording; for the performance line.
@@ -214,6 +216,8 @@ struct RecordingCost {
   // What went wrong, a line each for the user: a host that was lost, a camera that was unplugged.
   // The recording holds what came before.
   std::vector<std::string> notes{};
+  // Real programs that ended too early, which are among the notes: what the run has is not theirs.
+  std::vector<ProgramFailure> program_failures{};
 };
 
 // A capture that could not be made; what() is one line that says why. Other captures of the same

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 
 #include "evaluation/scoring/metrics.h"
@@ -21,8 +20,8 @@ std::size_t failed_seeds(const Row& row) {
 
 // Every series has a value of each seed.
 std::size_t seeds_of(const Row& row) {
-  return std::max(row.seeds.size(), std::max(row.amd_ms.values.size(),
-                                             row.clock_spread_ms.values.size()));
+  return std::max(row.seeds.size(),
+                  std::max(row.amd_ms.values.size(), row.clock_spread_ms.values.size()));
 }
 
 }  // namespace
@@ -37,7 +36,6 @@ void void_score(SeedScore& score) {
   score.pulses.clear();
   std::ranges::fill(score.host_errors_ms, kNan);
   score.sessions.clear();
-  std::ranges::move(failure_lines(score.program_failures), std::back_inserter(score.cost.notes));
 }
 
 std::string program_failure_text(const Row& row) {
@@ -48,7 +46,9 @@ std::string program_failure_text(const Row& row) {
 }
 
 bool failed_in_all_seeds(const Row& row) {
-  return !row.program_failures.empty() && failed_seeds(row) == seeds_of(row);
+  return row.is_of_programs && std::ranges::none_of(row.seeds, [](const SeedScore& seed) {
+           return seed.recorded && seed.program_failures.empty();
+         });
 }
 
 }  // namespace simbench::evaluation

@@ -20,14 +20,15 @@
 
 namespace simbench::evaluation {
 
-// Takes the values of a run in which programs ended, and adds notes on them; leaves others alone.
+// Takes the values of a run in which programs ended; leaves others alone.
 void void_score(SeedScore& score);
 
 // Of a row of programs: "a program ended in 1 of 4 seeds: seed 2, host 3, at 10.000213 s: chronyd:
 // exited with status 1: No such file"; "" if none ended.
 std::string program_failure_text(const Row& row);
 
-// Whether programs of the row ended in each of its seeds.
+// Whether the row's programs ended in each of its seeds, or cannot run here. Of rows that were just
+// made: archives keep no seeds.
 bool failed_in_all_seeds(const Row& row);
 
 }  // namespace simbench::evaluation

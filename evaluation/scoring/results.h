@@ -48,9 +48,9 @@ struct SeedScore : MetricValues<double> {
   SetCounts sets;
   // Frames whose place in GenLock order differs from their pulse; genlock only.
   std::int64_t genlock_index_errors = 0;
-  std::vector<PulseScore> pulses;         // with EvaluationOptions::keep_pulses
-  std::vector<double> host_errors_ms;     // signed mean over the evaluated pulses, per host
-  std::vector<SyncOutcome> failures;      // of host synchronisation, only those not synchronised
+  std::vector<PulseScore> pulses;      // with EvaluationOptions::keep_pulses
+  std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
+  std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
   // Real programs that ended; where there is one the seed has no values (program_failures.h).
   std::vector<ProgramFailure> program_failures{};
   std::vector<SessionDelays> sessions{};  // the last pass of each slave that reported one, by host
@@ -145,6 +145,8 @@ struct Results {
   std::vector<Claim> claims;
   std::optional<AsymmetryFloor> asymmetry_floor;  // if the scenario's links are asymmetric
   std::vector<std::string> warnings;
+  // Pipelines of real programs that cannot run here and have no row; warnings say why.
+  std::vector<std::string> programs_left_out{};
   std::vector<std::string> loss_reasons{};  // why pulses are lost: scenarios::loss_reasons()
   std::vector<std::string> load_reality{};  // scenarios::load_reality()
   Performance performance;

@@ -186,7 +186,7 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock) {
     const HostTime now = co_await host_.clock().now();
     reading = epoch_ns(now);
   } else {
-    reading = nanoseconds_of(host_.steady_clock().now());
+    reading = monotonic_ns(host_.steady_clock().now());
   }
   if (host_.true_now() == asked) co_await host_.sleep_for(kLeastReading);
   co_return Answer{.value = reading};

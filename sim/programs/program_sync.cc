@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <stdexcept>
@@ -21,6 +22,10 @@ using processes::fill;
 using processes::HostPlaces;
 using scenarios::HostPrograms;
 
+constexpr PeerId kMaster = 0;
+// What programs have at least until a clock that nobody has set is one that they failed to set.
+constexpr Nanoseconds kLeastNeeded = std::chrono::minutes(1);
+
 // For its commands, environment and files alike.
 HostPlaces places_of(SimHost& host) {
   return {.host = host.id(),
@@ -31,8 +36,8 @@ HostPlaces places_of(SimHost& host) {
 // The programs of one host.
 class RunningPrograms {
  public:
-  // `on_gone` is called when the run is over.
-  using OnGone = std::function<void(const processes::ProgramEndings&, bool clock_was_set)>;
+  // Called when the run is over, with the notes on it.
+  using OnGone = std::function<void(const std::vector<std::string>& notes, bool is_unset)>;
 
   RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, OnGone on_gone)
       : host_(host),
@@ -44,7 +49,10 @@ class RunningPrograms {
         on_gone_(std::move(on_gone)) {}
   RunningPrograms(const RunningPrograms&) = delete;
   RunningPrograms& operator=(const RunningPrograms&) = delete;
-  ~RunningPrograms() { on_gone_(endings_, kernel_.was_steered()); }
+  ~RunningPrograms() {
+    const bool is_said = is_reported_unset_ || endings_.has_failed();
+    on_gone_(endings_.notes(), host_.id() != kMaster && !kernel_.was_steered() && !is_said);
+  }
 
   // `kept`: the folder as the user has named it; empty: it is not kept.
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
@@ -65,7 +73,8 @@ class RunningPrograms {
                             static_cast<std::uint32_t>(number));
   }
 
-  Task<void> run(std::optional<Nanoseconds> duration) {
+  // `needed`: how long the programs take to synchronise the host. `duration`: nothing, for ever.
+  Task<void> run(Nanoseconds needed, std::optional<Nanoseconds> duration) {
     std::vector<Task<void>> tasks;
     for (PeerId peer = 0; peer < hosts_; ++peer) {
       if (peer == host_.id()) continue;
@@ -75,6 +84,7 @@ class RunningPrograms {
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
     for (std::size_t i = 0; i < processes_.size(); ++i) tasks.push_back(serve(i));
+    if (host_.id() != kMaster) tasks.push_back(watch_clock(needed));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
   }
@@ -87,6 +97,21 @@ class RunningPrograms {
     if (process.ending().empty()) co_return;  // it was stopped
     endings_.add(process.end(), {.at = host_.true_now() - begin, .log = logs_[number]},
                  kernel_.was_steered());
+  }
+
+  // A slave is not synchronised while nobody has set its clock.
+  Task<void> watch_clock(Nanoseconds needed) {
+    co_await kernel_.until_steered(host_.true_now() + needed);
+    if (kernel_.was_steered() || endings_.has_failed()) co_return;
+    is_reported_unset_ = true;
+    host_.report_outcome({.slave = host_.id(),
+                          .synchronised = false,
+                          .passes = 0,
+                          .message = fmt::format("host {}: no program has set its clock in {:g} s",
+                                                 host_.id(), to_seconds(needed))});
+    co_await kernel_.until_steered(std::nullopt);
+    if (endings_.has_failed()) co_return;
+    host_.report_outcome({.slave = host_.id(), .synchronised = true, .passes = 0, .message = ""});
   }
 
   Task<void> stop_after(Nanoseconds duration) {
@@ -102,6 +127,7 @@ class RunningPrograms {
   std::deque<Process> processes_;
   std::vector<std::string> logs_;  // by process
   processes::ProgramEndings endings_;
+  bool is_reported_unset_ = false;
   OnGone on_gone_;
 };
 
@@ -148,10 +174,10 @@ std::string ProgramSync::make_folder(SimHost& host) {
 
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
-  const auto on_gone = [this, id = host.id()](const processes::ProgramEndings& endings,
-                                              bool clock_was_set) {
-    notes_.insert(notes_.end(), endings.notes().begin(), endings.notes().end());
-    if (id != 0 && !clock_was_set && !endings.has_failed()) unset_.insert(id);
+  const auto on_gone = [this, id = host.id()](const std::vector<std::string>& notes,
+                                              bool is_unset) {
+    notes_.insert(notes_.end(), notes.begin(), notes.end());
+    if (is_unset) unset_.insert(id);
   };
   RunningPrograms programs(own, settings_.hosts, commands.size(), on_gone);
   const std::string folder = make_folder(own);
@@ -160,7 +186,7 @@ Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> comma
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
-  co_await programs.run(duration);
+  co_await programs.run(std::max(*warm_up(), kLeastNeeded), duration);
 }
 
 Task<void> ProgramSync::run_master(Host& host, std::vector<PeerId> /*slaves*/) {
