@@ -114,10 +114,10 @@ void members(const auto& form, Any<SessionDelays> auto& delays) {
 
 void members(const auto& form, Any<ProgramFailure> auto& failure) {
   form("host", failure.host);
-  form("program", failure.program);
   form("at_ns", failure.at);
-  form("how", failure.how);
-  form("last_words", failure.last_words);
+  form.inner("program", failure.program);
+  form.inner("how", failure.how);
+  form.inner("last_words", failure.last_words);
   form("log", failure.log);
 }
 
@@ -193,6 +193,7 @@ struct Writer {
     line += ',';
     append_escaped(line, text);
   }
+  void inner(const char* name, const std::string& text) const { (*this)(name, text); }
   void operator()(const char* /*name*/, Nanoseconds interval) const {
     append_field(line, interval.count());
   }
@@ -214,7 +215,9 @@ struct Reader {
 
   void operator()(const char* name, bool& flag) const { flag = read_flag(fields, name); }
   void operator()(const char* name, double& value) const { value = fields.finite(name); }
+  // The last member; inner(): others.
   void operator()(const char* name, std::string& text) const { text = fields.text(name); }
+  void inner(const char* name, std::string& text) const { text = fields.inner_text(name); }
   void operator()(const char* name, Nanoseconds& interval) const {
     interval = Nanoseconds(fields.whole<std::int64_t>(name));
   }

@@ -44,7 +44,7 @@ class PartProgress {
   using Clock = std::function<std::chrono::duration<double>()>;
 
   static constexpr double kLeastMeasuredS = 0.5;
-  static constexpr double kLeastMeasuredShare = 0.005;  // of one run
+  static constexpr double kLeastMeasuredShare = 0.02;  // of one run
 
   // `progress` must outlive this; `clock` counts seconds from any zero.
   PartProgress(const Progress& progress, PartPlan plan, Clock clock = steady_seconds);
