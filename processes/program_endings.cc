@@ -21,27 +21,26 @@ std::string without_setting(const std::string& how) {
 }  // namespace
 
 void ProgramEndings::fail(const ProgramEnd& end, const EndPlace& place) {
-  has_failed_ = true;
-  const ProgramFailure failure{.host = host_.id(),
-                               .program = end.program,
-                               .at = place.at,
-                               .how = end.how,
-                               .last_words = end.last_words,
-                               .log = place.log};
-  host_.report_program_failure(failure);
+  failure_ = {.host = host_.id(),
+              .program = end.program,
+              .at = place.at,
+              .how = end.how,
+              .last_words = end.last_words,
+              .log = place.log};
+  host_.report_program_failure(*failure_);
   host_.report_outcome({.slave = host_.id(),
                         .synchronised = false,
                         .passes = 0,
-                        .message = failure_text(failure)});
+                        .message = failure_text(*failure_)});
 }
 
 void ProgramEndings::add(ProgramEnd end, const EndPlace& place, bool clock_was_set) {
   --running_;
-  if (has_failed_) return;
+  if (failure_) return;
   if (end.status != 0) return fail(end, place);
   if (running_ > 0) return;
-  const std::string when = fmt::format("host {}, at {}: {}", host_.id(), run_time_text(place.at),
-                                       end.program);
+  const std::string when =
+      fmt::format("host {}, at {}: {}", host_.id(), run_time_text(place.at), end.program);
   if (host_.id() == kMaster) {
     notes_.push_back(when + ": ended with status 0; nobody serves the hosts from then on");
   } else if (clock_was_set) {

@@ -19,6 +19,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,14 +43,15 @@ class ProgramEndings {
   void add(ProgramEnd end, const EndPlace& place, bool clock_was_set);
   // What the run should say besides, a line each.
   const std::vector<std::string>& notes() const { return notes_; }
-  bool has_failed() const { return has_failed_; }
+  // The host's failure, if it has failed.
+  const std::optional<ProgramFailure>& failure() const { return failure_; }
 
  private:
   void fail(const ProgramEnd& end, const EndPlace& place);
 
   Host& host_;
   std::size_t running_;
-  bool has_failed_ = false;
+  std::optional<ProgramFailure> failure_;
   std::vector<std::string> notes_;
 };
 

@@ -16,7 +16,6 @@
 #include "evaluation/scoring/program_failures.h"
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
-#include "recording/program_failure.h"
 #include "scenarios/loader.h"
 #include "scenarios/reality.h"
 
@@ -187,8 +186,6 @@ class ClockEvaluation {
                         .simulated_seconds = to_seconds(span.duration + lost_for() + recovery()),
                         .trace_hash = cost.trace_hash,
                         .notes = host_sync->notes()};
-    std::ranges::move(failure_lines(scored.seed.program_failures),
-                      std::back_inserter(scored.seed.cost.notes));
     void_score(scored.seed);
     scored.curves = std::move(score.curves);
     scored.hosts = {.to_truth = std::move(score.to_truth), .pairs = std::move(score.pairs)};

@@ -512,7 +512,7 @@ RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, 
                                       .share_done = share_done},
                                      choice.pipeline.programs ? watch : sink);
   std::ranges::move(host_sync->notes(), std::back_inserter(cost.notes));
-  // A replayed recording has them among its notes.
+  // Where they ran in this process, and in a replayed recording, they are among the notes.
   std::ranges::copy_if(failure_lines(watch.failures), std::back_inserter(cost.notes),
                        [&cost](const std::string& line) {
                          return std::ranges::find(cost.notes, line) == cost.notes.end();

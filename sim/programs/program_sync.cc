@@ -12,6 +12,7 @@
 #include "algorithms/host_sync/join.h"
 #include "processes/placeholders.h"
 #include "processes/program_endings.h"
+#include "recording/program_failure.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/process.h"
 
@@ -33,25 +34,29 @@ HostPlaces places_of(SimHost& host) {
           .drift = host.stored_frequency()};
 }
 
+// What the programs of one host tell of it.
+struct Told {
+  std::function<void(const ProgramFailure&)> failed;
+  // When the run is over: with notes, and whether nobody set a slave's clock, which nothing says.
+  std::function<void(const std::vector<std::string>& notes, bool is_unset)> gone;
+};
+
 // The programs of one host.
 class RunningPrograms {
  public:
-  // Called when the run is over, with the notes on it.
-  using OnGone = std::function<void(const std::vector<std::string>& notes, bool is_unset)>;
-
-  RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, OnGone on_gone)
+  RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, Told told)
       : host_(host),
         hosts_(hosts),
         network_(host, hosts),
         kernel_(host),
         card_(host),
         endings_(host, programs),
-        on_gone_(std::move(on_gone)) {}
+        told_(std::move(told)) {}
   RunningPrograms(const RunningPrograms&) = delete;
   RunningPrograms& operator=(const RunningPrograms&) = delete;
   ~RunningPrograms() {
-    const bool is_said = is_reported_unset_ || endings_.has_failed();
-    on_gone_(endings_.notes(), host_.id() != kMaster && !kernel_.was_steered() && !is_said);
+    const bool is_said = is_reported_unset_ || endings_.failure();
+    told_.gone(endings_.notes(), host_.id() != kMaster && !kernel_.was_steered() && !is_said);
   }
 
   // `kept`: the folder as the user has named it; empty: it is not kept.
@@ -95,14 +100,16 @@ class RunningPrograms {
     const TrueTime begin = host_.true_now();
     co_await process.serve();
     if (process.ending().empty()) co_return;  // it was stopped
+    const bool had_failed = endings_.failure().has_value();
     endings_.add(process.end(), {.at = host_.true_now() - begin, .log = logs_[number]},
                  kernel_.was_steered());
+    if (!had_failed && endings_.failure()) told_.failed(*endings_.failure());
   }
 
   // A slave is not synchronised while nobody has set its clock.
   Task<void> watch_clock(Nanoseconds needed) {
     co_await kernel_.until_steered(host_.true_now() + needed);
-    if (kernel_.was_steered() || endings_.has_failed()) co_return;
+    if (kernel_.was_steered() || endings_.failure()) co_return;
     is_reported_unset_ = true;
     host_.report_outcome({.slave = host_.id(),
                           .synchronised = false,
@@ -110,7 +117,7 @@ class RunningPrograms {
                           .message = fmt::format("host {}: no program has set its clock in {:g} s",
                                                  host_.id(), to_seconds(needed))});
     co_await kernel_.until_steered(std::nullopt);
-    if (endings_.has_failed()) co_return;
+    if (endings_.failure()) co_return;
     host_.report_outcome({.slave = host_.id(), .synchronised = true, .passes = 0, .message = ""});
   }
 
@@ -128,7 +135,7 @@ class RunningPrograms {
   std::vector<std::string> logs_;  // by process
   processes::ProgramEndings endings_;
   bool is_reported_unset_ = false;
-  OnGone on_gone_;
+  Told told_;
 };
 
 SimHost& simulated(Host& host) {
@@ -146,7 +153,8 @@ std::optional<Nanoseconds> ProgramSync::warm_up() const {
 }
 
 std::vector<std::string> ProgramSync::notes() const {
-  std::vector<std::string> notes = notes_;
+  std::vector<std::string> notes = failure_lines(failures_);
+  notes.insert(notes.end(), notes_.begin(), notes_.end());
   if (!unset_.empty()) {
     notes.push_back(fmt::format("{} {}: no program has set the clock, which ran free",
                                 unset_.size() == 1 ? "host" : "hosts", fmt::join(unset_, ", ")));
@@ -174,12 +182,14 @@ std::string ProgramSync::make_folder(SimHost& host) {
 
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
-  const auto on_gone = [this, id = host.id()](const std::vector<std::string>& notes,
-                                              bool is_unset) {
-    notes_.insert(notes_.end(), notes.begin(), notes.end());
-    if (is_unset) unset_.insert(id);
-  };
-  RunningPrograms programs(own, settings_.hosts, commands.size(), on_gone);
+  RunningPrograms programs(
+      own, settings_.hosts, commands.size(),
+      {.failed = [this](const ProgramFailure& failure) { failures_.push_back(failure); },
+       .gone =
+           [this, id = host.id()](const std::vector<std::string>& notes, bool is_unset) {
+             notes_.insert(notes_.end(), notes.begin(), notes.end());
+             if (is_unset) unset_.insert(id);
+           }});
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
     programs.start(command, settings_, folder, kept_folder(own));

@@ -9,7 +9,8 @@
 // A program that ends by itself may be the host's failure, or have done its work
 // (processes/program_endings.h). A slave whose clock no program has set or steered after
 // run_before_capture_s, or a minute if that is more, is not synchronised until one does. After the
-// run notes() has those of shorter runs, and a master whose programs have all ended.
+// run notes() has the failures, slaves that nobody has set in a shorter run, and a master whose
+// programs have all ended.
 //
 // Only one process runs at a time, and time moves only when all wait: the same scenario and seed
 // give the same bytes. For the simulated world only: other hosts are a std::logic_error.
@@ -70,6 +71,7 @@ class ProgramSync final : public HostSync {
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
+  std::vector<ProgramFailure> failures_;  // one of a host, in the order of their ends
   std::vector<std::string> notes_;
   std::set<PeerId> unset_;  // slaves whose clocks nobody set, which nothing else says
 };
