@@ -5,7 +5,9 @@
 //   nothing      ends with status 0 after a while, and leaves the clock alone
 //   late         fails after 2.5 s
 //   tidy         fails, with a last line that is long, coloured and no UTF-8
-//   wait         goes on for ever
+//   unlucky HOST sets the clock and goes on for ever; on host 2 it fails in about every second
+//   world wait         goes on for ever
+#include <sys/random.h>
 #include <sys/timex.h>
 
 #include <cstring>
@@ -53,6 +55,15 @@ int tidy() {
   return 5;
 }
 
+int unlucky(const char* host) {
+  set();
+  unsigned char chance = 0;
+  expect(getrandom(&chance, sizeof chance, 0) == sizeof chance, "getrandom");
+  if (std::strcmp(host, "2") != 0 || chance < 128) return -1;
+  std::puts("out of luck");
+  return 4;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -62,5 +73,8 @@ int main(int count, char** words) {
   if (std::strcmp(what, "nothing") == 0) return nothing();
   if (std::strcmp(what, "late") == 0) return late();
   if (std::strcmp(what, "tidy") == 0) return tidy();
+  if (std::strcmp(what, "unlucky") == 0 && count == 3) {
+    if (const int status = unlucky(words[2]); status >= 0) return status;
+  }
   for (;;) sleep(3600);
 }
