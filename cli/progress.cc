@@ -82,8 +82,7 @@ void Progress::update(std::uint64_t done, std::uint64_t total) {
   if (style_.json) {
     print_event(done, total);
   } else if (style_.terminal) {
-    const bool is_late = last_drawn_ > clock_() - kRedrawInterval;
-    if (drawn_ && is_late && done < total) return;
+    if (was_just_drawn() && done < total) return;
     draw(static_cast<double>(done) / static_cast<double>(total), total, time_left(done, total));
   } else {
     print_line(done, total);
@@ -94,14 +93,17 @@ void Progress::update(const evaluation::PartDone& parts) {
   if (finished_ || parts.total == 0) return;
   total_ = parts.total;
   part_left_s_ = parts.left_s;
-  const bool is_late = last_drawn_ > clock_() - kRedrawInterval;
   if (style_.json) {
-    if (!std::isnan(part_left_s_)) print_event(done_, total_);
+    if (!std::isnan(parts.left_s)) print_event(done_, total_);
   } else if (!style_.terminal) {
     print_estimate(parts);
-  } else if (!drawn_ || !is_late) {
+  } else if (!was_just_drawn()) {
     draw(parts.done / static_cast<double>(parts.total), parts.total, time_left(done_, total_));
   }
+}
+
+bool Progress::was_just_drawn() const {
+  return drawn_ && clock_() - last_drawn_ < kRedrawInterval;
 }
 
 // Once, and only of what is worth waiting for.
@@ -109,9 +111,9 @@ void Progress::print_estimate(const evaluation::PartDone& parts) {
   constexpr double kAMoment = 3;
   if (has_estimated_ || !(parts.left_s > kAMoment)) return;
   has_estimated_ = true;
-  out_ << fmt::format("about {} left, by the speed of the first {:.1g} %\n",
-                      duration_text(parts.left_s),
-                      100 * parts.done / static_cast<double>(parts.total))
+  const double percent = 100 * parts.done / static_cast<double>(parts.total);
+  out_ << fmt::format("about {} left, by the speed of the first {:.{}f} %\n",
+                      duration_text(parts.left_s), percent, percent < 1 ? 1 : 0)
        << std::flush;
 }
 
@@ -154,7 +156,7 @@ void Progress::print_last_event(const char* event) {
 }
 
 double Progress::left_s(std::uint64_t done, std::uint64_t total) const {
-  if (!std::isnan(part_left_s_)) return part_left_s_;
+  if (part_left_s_) return *part_left_s_;
   if (done == 0) return std::numeric_limits<double>::quiet_NaN();
   return elapsed_s() * static_cast<double>(total - done) / static_cast<double>(done);
 }

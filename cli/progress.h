@@ -83,6 +83,7 @@ class Progress {
   void draw(double share, std::uint64_t total, const std::string& left);
   void print_line(std::uint64_t done, std::uint64_t total);
   void print_estimate(const evaluation::PartDone& parts);
+  bool was_just_drawn() const;
 
   std::ostream& out_;
   ProgressStyle style_;
@@ -93,7 +94,8 @@ class Progress {
   std::uint64_t next_quarter_ = 0;
   std::uint64_t done_ = 0;
   std::uint64_t total_ = 0;
-  double part_left_s_ = evaluation::kNan;  // as last measured within runs
+  // As last measured within runs, NaN before; nothing: nobody tells.
+  std::optional<double> part_left_s_;
   bool has_estimated_ = false;
   bool drawn_ = false;
   bool finished_ = false;

@@ -36,12 +36,15 @@ std::chrono::duration<double> PartProgress::steady_seconds() {
 void PartProgress::begin(std::size_t run) {
   if (!is_on_) return;
   const std::lock_guard lock(mutex_);
+  runs_[run].has_begun = true;
   runs_[run].begin_s = clock_().count();
 }
 
 ShareDone PartProgress::share_of(std::size_t run) {
   if (!is_on_ || !plan_.of_programs[plan_.pipelines[run]]) return {};
-  return [this, run](double share) { take(run, share); };
+  return [this, run](double share) {
+    if (share >= kStartedShare) take(run, share);
+  };
 }
 
 void PartProgress::end(std::size_t run) {
@@ -51,33 +54,64 @@ void PartProgress::end(std::size_t run) {
 void PartProgress::take(std::size_t run, double share) {
   const std::lock_guard lock(mutex_);
   Run& taken = runs_[run];
-  taken.took_s = clock_().count() - taken.begin_s;
   taken.share = std::clamp(share, 0.0, 1.0);
+  const double since_begin_s = clock_().count() - taken.begin_s;
+  if (!taken.start_s) {
+    taken.start_s = since_begin_s;
+    taken.first_share = taken.share;
+  }
+  taken.took_s = since_begin_s - *taken.start_s;
   tell();
 }
 
+void PartProgress::Measured::add(const Run& run) {
+  if (!run.has_begun) {
+    ++not_begun;
+    return;
+  }
+  shares_left += 1 - run.share;
+  if (!run.start_s) return;
+  ++started;
+  start_s += *run.start_s;
+  first_shares += run.first_share;
+  took_s += run.took_s;
+  shares += run.share - run.first_share;
+}
+
+bool PartProgress::Measured::is_known() const {
+  const bool is_of_wholes = started > 0 && first_shares == started;  // of runs that tell no shares
+  return is_of_wholes || (took_s >= kLeastMeasuredS && shares >= kLeastMeasuredShare);
+}
+
+double PartProgress::Measured::each_share_s() const { return shares > 0 ? took_s / shares : 0; }
+
+double PartProgress::Measured::each_run_s() const {
+  return (start_s + each_share_s() * (started - first_shares)) / started;
+}
+
 double PartProgress::left_s() const {
-  struct Measured {
-    double took_s = 0;
-    double shares = 0;
-    double left = 0;  // runs
-  };
   std::vector<Measured> pipelines(plan_.of_programs.size());
   for (std::size_t run = 0; run < runs_.size(); ++run) {
-    Measured& pipeline = pipelines[plan_.pipelines[run]];
-    pipeline.took_s += runs_[run].took_s;
-    pipeline.shares += runs_[run].share;
-    pipeline.left += 1 - runs_[run].share;
+    pipelines[plan_.pipelines[run]].add(runs_[run]);
   }
   double left_s = 0;
-  bool is_known = false;
-  for (const Measured& pipeline : pipelines) {
-    if (pipeline.took_s < kLeastMeasuredS || pipeline.shares < kLeastMeasuredShare) continue;
-    left_s += pipeline.left * pipeline.took_s / pipeline.shares;
-    is_known = true;
+  double known = 0;  // pipelines of programs
+  double known_run_s = 0;
+  double unknown_runs = 0;
+  for (std::size_t i = 0; i < pipelines.size(); ++i) {
+    const Measured& each = pipelines[i];
+    if (each.is_known()) {
+      left_s += each.each_share_s() * each.shares_left + each.each_run_s() * each.not_begun;
+      if (!plan_.of_programs[i]) continue;
+      ++known;
+      known_run_s += each.each_run_s();
+    } else if (plan_.of_programs[i]) {
+      unknown_runs += each.shares_left + each.not_begun;
+    }
   }
-  const auto threads = static_cast<double>(std::min(plan_.threads, runs_.size()));
-  return is_known ? left_s / std::max(1.0, threads) : kNan;
+  if (known == 0) return kNan;
+  left_s += unknown_runs * known_run_s / known;
+  return left_s / static_cast<double>(std::clamp(plan_.threads, std::size_t{1}, runs_.size()));
 }
 
 void PartProgress::tell() {

@@ -3,9 +3,11 @@
 //
 // A run of real programs takes seconds or minutes where one of an algorithm takes a moment, and
 // nobody knows which before: programs decide how often they ask for the time. Runs of one pipeline
-// take about as long, in equal shares of their time. What a share took in the runs so far is the
-// estimate for the pipeline's rest; of pipelines that have not begun nothing is counted, so runs of
-// programs should come first. Nothing is known before kLeastMeasured.
+// take about as long: until kStartedShare is over, while programs start, and from then on in equal
+// times for equal shares. What both took in the runs so far is the estimate for the
+// pipeline's rest, and their mean that of other programs; algorithms that have not begun are not
+// counted, so runs of programs come first. Nothing is known before kLeastMeasuredS and
+// kLeastMeasuredShare of one.
 //
 // Thread-safe. Costs nothing where nobody asks (Progress::on_part).
 //
@@ -21,6 +23,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
@@ -43,8 +46,9 @@ class PartProgress {
  public:
   using Clock = std::function<std::chrono::duration<double>()>;
 
+  static constexpr double kStartedShare = 0.001;
   static constexpr double kLeastMeasuredS = 0.5;
-  static constexpr double kLeastMeasuredShare = 0.02;  // of one run
+  static constexpr double kLeastMeasuredShare = 0.01;  // of one run
 
   // `progress` must outlive this; `clock` counts seconds from any zero.
   PartProgress(const Progress& progress, PartPlan plan, Clock clock = steady_seconds);
@@ -58,9 +62,28 @@ class PartProgress {
 
  private:
   struct Run {
+    bool has_begun = false;
     double begin_s = 0;
-    double took_s = 0;
+    std::optional<double> start_s{};  // until kStartedShare
+    double first_share = 0;
+    double took_s = 0;  // since then
     double share = 0;
+  };
+  // The runs of a pipeline together.
+  struct Measured {
+    double start_s = 0;
+    double started = 0;  // runs
+    double took_s = 0;
+    double shares = 0;
+    double shares_left = 0;  // of the runs that have begun
+    double not_begun = 0;    // runs
+    double first_shares = 0;
+
+    void add(const Run& run);
+    bool is_known() const;
+    // Of those that are known.
+    double each_share_s() const;
+    double each_run_s() const;
   };
 
   static std::chrono::duration<double> steady_seconds();
