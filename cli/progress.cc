@@ -102,9 +102,7 @@ void Progress::update(const evaluation::PartDone& parts) {
   }
 }
 
-bool Progress::was_just_drawn() const {
-  return drawn_ && clock_() - last_drawn_ < kRedrawInterval;
-}
+bool Progress::was_just_drawn() const { return drawn_ && clock_() - last_drawn_ < kRedrawInterval; }
 
 // Once, and only of what is worth waiting for.
 void Progress::print_estimate(const evaluation::PartDone& parts) {

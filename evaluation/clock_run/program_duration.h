@@ -28,7 +28,7 @@ inline constexpr double kMostProcessSeconds = 21'600;  // six hosts with a progr
 std::vector<const scenarios::Pipeline*> program_pipelines(const scenarios::Scenario& scenario,
                                                           const std::vector<std::string>& names);
 
-// Of a scenario in which such pipelines run. Whole minutes.
+// In whole minutes. Such pipelines run in the scenario.
 std::uint64_t program_duration_s(const scenarios::Scenario& scenario,
                                  const std::vector<std::string>& names, std::uint64_t from_s);
 

@@ -57,13 +57,14 @@ struct PartDone {
 };
 
 // Told how many runs are done. Called from worker threads, one call at a time; must not throw.
-class Progress : public std::function<void(std::uint64_t done, std::uint64_t total)> {
+class ProgressCallback : public std::function<void(std::uint64_t done, std::uint64_t total)> {
  public:
   using function::function;
   // Also told in between, where real programs run: one run of theirs may take minutes. Empty:
   // nobody asks.
   std::function<void(const PartDone&)> on_part{};
 };
+using Progress = ProgressCallback;
 // Makes the backend of one worker thread; called once per thread, from that thread.
 using SourceFactory = std::function<std::unique_ptr<RecordingSource>()>;
 // Makes the backend for a scenario, which outlives it; called from worker threads.

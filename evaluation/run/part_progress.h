@@ -81,7 +81,7 @@ class PartProgress {
 
     void add(const Run& run);
     bool is_known() const;
-    // Of those that are known.
+    // They exist if is_known().
     double each_share_s() const;
     double each_run_s() const;
   };

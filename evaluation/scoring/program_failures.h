@@ -23,12 +23,12 @@ namespace simbench::evaluation {
 // Takes the values of a run in which programs ended; leaves others alone.
 void void_score(SeedScore& score);
 
-// Of a row of programs: "a program ended in 1 of 4 seeds: seed 2, host 3, at 10.000213 s: chronyd:
+// For a row of programs: "a program ended in 1 of 4 seeds: seed 2, host 3, at 10.000213 s: chronyd:
 // exited with status 1: No such file"; "" if none ended.
 std::string program_failure_text(const Row& row);
 
-// Whether the row's programs ended in each of its seeds, or cannot run here. Of rows that were just
-// made: archives keep no seeds.
+// Whether the row's programs ended in each of its seeds, or cannot run here. It must
+// have its seeds, which archives do not keep.
 bool failed_in_all_seeds(const Row& row);
 
 }  // namespace simbench::evaluation

@@ -79,7 +79,7 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string gathering;
   bool is_of_programs = false;  // its host_sync is real programs
   std::string model;            // then: the pipeline that models them; empty: none
-  // Of all seeds, in their order: the row has failed.
+  // In all seeds, in their order: the row has failed.
   std::vector<SeedProgramFailure> program_failures{};
   bool offline = false;  // device_time needs the whole recording
   // The weakest of the seeds that were recorded; kNone if none was.

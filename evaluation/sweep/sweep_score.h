@@ -50,7 +50,7 @@ struct ResponseRow {
   // What captures have over all seeds; margin_ms is the median of the seeds'.
   PooledValues pooled{};
   std::vector<Series> hosts{};  // |mean clock error| of each host; the master's is first
-  // Of how many seeds a real program ended too early, and the first failure in words.
+  // In how many seeds a real program ended too early, and the first failure in words.
   std::size_t failed_seeds = 0;
   std::string failed{};
 

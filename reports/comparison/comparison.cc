@@ -37,7 +37,7 @@ struct RowPair {
 };
 
 // What seeds of a row have in which no program ended is no value of it: it has failed.
-std::vector<double> values_of(const evaluation::Metric& metric, const Row& row) {
+std::vector<double> compared_values(const evaluation::Metric& metric, const Row& row) {
   std::vector<double> values = metric.series(row).values;
   if (!row.program_failures.empty()) std::ranges::fill(values, evaluation::kNan);
   return values;
@@ -69,11 +69,12 @@ void compare(const std::vector<RowPair>& rows, const SeedPairing& pairing,
   tasks.reserve(rows.size() * judged.size());
   for (const RowPair& row : rows) {
     for (const evaluation::Metric* metric : judged) {
-      tasks.push_back({.values = evaluation::pair_up(pairing.of_a(values_of(*metric, *row.a)),
-                                                     pairing.of_b(values_of(*metric, *row.b))),
-                       .rule = {.smallest_effect = options.smallest_effect,
-                                .smallest_step = metric->judged->smallest_step,
-                                .higher_is_better = metric->higher_is_better()}});
+      tasks.push_back(
+          {.values = evaluation::pair_up(pairing.of_a(compared_values(*metric, *row.a)),
+                                         pairing.of_b(compared_values(*metric, *row.b))),
+           .rule = {.smallest_effect = options.smallest_effect,
+                    .smallest_step = metric->judged->smallest_step,
+                    .higher_is_better = metric->higher_is_better()}});
     }
   }
   note_failed(rows, comparison);

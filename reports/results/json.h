@@ -77,10 +77,10 @@ void state_derivation(const scenarios::Derivation& derivation, Json& root);
 // Throws scenarios::InputError. A document without the members has none.
 scenarios::Derivation read_derivation(const JsonNode& root);
 
-// Of rows of real programs, of clock runs too, the member "program_failures": a list, empty if none
-// ended too early, of {"seed", "host", "program", "at_s": since the run began, "how", "last_words":
-// null or the last line of its output, "log": null or the file that has it}. A seed in it has null
-// in all values.
+// Rows of real programs, in clock runs too, have the member "program_failures": a list, empty if
+// none ended too early, of {"seed", "host", "program", "at_s": since the run began, "how",
+// "last_words": null or the last line of its output, "log": null or the file that has it}. A seed
+// in it has null in all values.
 void state_programs(const evaluation::Row& row, Json& to);
 // Throws scenarios::InputError. Other rows lack the member.
 void read_programs(const JsonNode& from, evaluation::Row& row);

@@ -66,7 +66,7 @@ class ProgramSync final : public HostSync {
   Task<void> run(Host& host, std::vector<scenarios::HostPrograms::Command> commands);
   // Empty, and made.
   std::string make_folder(SimHost& host);
-  // Of the host's log folder, as the user has named it; empty: nobody keeps it.
+  // The host's log folder, as the user has named it; empty: nobody keeps it.
   std::string kept_folder(const SimHost& host) const;
 
   ProgramSettings settings_;

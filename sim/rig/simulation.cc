@@ -182,7 +182,8 @@ class WorldRun {
   std::optional<Nanoseconds> service_time() const {
     return host_sync_ != nullptr ? host_sync_->warm_up() : std::nullopt;
   }
-  // Of the time until the last evaluated pulse; of a protocol that ends by itself nobody knows it.
+  // The share of the time until the last evaluated pulse. If a protocol ends by itself, nobody
+  // knows it.
   std::function<void(TrueTime)> share_of_time(const ShareDone& share_done) const {
     if (!share_done || !service_time()) return {};
     const double pulses = static_cast<double>(evaluated_slots(scenario_).last);

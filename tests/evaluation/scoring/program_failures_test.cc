@@ -24,7 +24,7 @@ const ProgramFailure kFailure{.host = 1,
                               .last_words = "No such file"};
 
 // A capture whose hosts have clocks some milliseconds apart.
-SeedScore scored(std::uint64_t seed, bool has_failed) {
+SeedScore scored_capture(std::uint64_t seed, bool has_failed) {
   TestCapture capture(/*hosts=*/2, /*cameras_per_host=*/3);
   capture.host_errors = {Nanoseconds(0), from_ms(3)};
   PipelineScorer scorer(arrival_setup());
@@ -34,7 +34,7 @@ SeedScore scored(std::uint64_t seed, bool has_failed) {
       scorer, {.events = 7, .simulated_seconds = 2, .messages = 10, .notes = {"a note"}}, seed);
 }
 
-Row row_of(std::vector<SeedScore> seeds) {
+Row row_of_programs(std::vector<SeedScore> seeds) {
   scenarios::Pipeline pipeline;
   pipeline.name = "mine";
   pipeline.host_sync = "program chronyd";
@@ -45,8 +45,8 @@ Row row_of(std::vector<SeedScore> seeds) {
 }
 
 TEST(ProgramFailures, ASeedWithOneHasNoValues) {
-  const SeedScore good = scored(1, false);
-  const SeedScore bad = scored(1, true);
+  const SeedScore good = scored_capture(1, false);
+  const SeedScore bad = scored_capture(1, true);
   ASSERT_THAT(bad.program_failures, SizeIs(1));
   for (const Metric& metric : metrics()) {
     if (!metric.is_series()) continue;
@@ -65,7 +65,8 @@ TEST(ProgramFailures, ASeedWithOneHasNoValues) {
 }
 
 TEST(ProgramFailures, ItsRowHasFailedAndKeepsTheOtherSeeds) {
-  const Row row = row_of({scored(1, false), scored(2, true), scored(3, false), scored(4, false)});
+  const Row row = row_of_programs({scored_capture(1, false), scored_capture(2, true),
+                                   scored_capture(3, false), scored_capture(4, false)});
   EXPECT_TRUE(row.is_of_programs);
   EXPECT_THAT(row.amd_ms.values[1], IsNan());
   EXPECT_GT(row.amd_ms.median, 1);
@@ -80,7 +81,7 @@ TEST(ProgramFailures, ItsRowHasFailedAndKeepsTheOtherSeeds) {
 }
 
 TEST(ProgramFailures, WhateverTheRowIsElse) {
-  Row row = row_of({scored(1, true)});
+  Row row = row_of_programs({scored_capture(1, true)});
   row.host_sync = "oracle";  // a limit
   EXPECT_EQ(standing_of(row, RankedBy::kAmd).is, RowStanding::kFailed);
   EXPECT_EQ(standing_of(row, RankedBy::kExposureSpread).is, RowStanding::kFailed);
@@ -88,17 +89,19 @@ TEST(ProgramFailures, WhateverTheRowIsElse) {
 
 TEST(ProgramFailures, NoAnswerCountsIt) {
   Results results;
-  results.rows = {row_of({scored(1, false), scored(2, true)})};
+  results.rows = {row_of_programs({scored_capture(1, false), scored_capture(2, true)})};
   const Answer answer = answer_of(results);
   EXPECT_EQ(answer.best, nullptr);
   ASSERT_THAT(answer.failed, SizeIs(1));
 }
 
 TEST(ProgramFailures, AllSeedsAreAllThatWereRecorded) {
-  EXPECT_TRUE(failed_in_all_seeds(row_of({scored(1, true), scored(2, true)})));
-  EXPECT_TRUE(failed_in_all_seeds(row_of({scored(1, true), missing_score(2, "no camera")})));
-  EXPECT_FALSE(failed_in_all_seeds(row_of({scored(1, false)})));
-  Row of_algorithms = row_of({missing_score(1, "no camera")});
+  EXPECT_TRUE(
+      failed_in_all_seeds(row_of_programs({scored_capture(1, true), scored_capture(2, true)})));
+  EXPECT_TRUE(failed_in_all_seeds(
+      row_of_programs({scored_capture(1, true), missing_score(2, "no camera")})));
+  EXPECT_FALSE(failed_in_all_seeds(row_of_programs({scored_capture(1, false)})));
+  Row of_algorithms = row_of_programs({missing_score(1, "no camera")});
   EXPECT_TRUE(failed_in_all_seeds(of_algorithms)) << "its programs cannot run";
   of_algorithms.is_of_programs = false;
   EXPECT_FALSE(failed_in_all_seeds(of_algorithms));

@@ -40,7 +40,7 @@ const char* const kReason =
     "a program ended in 1 of 3 seeds: seed 5, host 2, at 0.250000 s: chronyd: exited with status "
     "1: No such file";
 
-// Of seed 5, the second of three.
+// In seed 5, the second of three.
 void fail_second_seed(Row& row, const std::string& log = "") {
   row.is_of_programs = true;
   row.unsynchronised_hosts = 1;
