@@ -20,6 +20,7 @@
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
 #include "recording/collected.h"
+#include "recording/program_failure.h"
 #include "recording/version.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/figure.h"
@@ -199,7 +200,8 @@ class FigureMaker {
       const std::unique_ptr<RecordingSource> source = make_world_(mode.scenario);
       for (const PipelineChoice& choice :
            evaluation::choose_pipelines(mode.scenario, mode.pipelines)) {
-        runs.push_back(evaluation::run_detail(mode.scenario, choice, seed, *source));
+        RunDetail run = evaluation::run_detail(mode.scenario, choice, seed, *source);
+        if (is_of_its_pipeline(run)) runs.push_back(std::move(run));
       }
     }
     add({reports::digital_clocks(runs)}, source_of_repeated_run());
@@ -221,7 +223,7 @@ class FigureMaker {
     evaluation::run_jobs_with_workers(choices.size(), {}, make_worker);
     std::vector<RunDetail> runs;
     for (RunDetail& run : made) {
-      if (is_the_archives(run)) runs.push_back(std::move(run));
+      if (is_of_its_pipeline(run) && is_the_archives(run)) runs.push_back(std::move(run));
     }
     const FigureSource source = source_of_repeated_run();
     for (const RunDetail& run : runs) add(reports::run_figures(run), source);
@@ -242,8 +244,20 @@ class FigureMaker {
         collected(choices, &PipelineChoice::pipeline);
     for (const evaluation::PipelineBudget& budget :
          evaluation::pipeline_budgets(scenario, pipelines, make_world_, seeds, progress_)) {
+      if (!budget.stages.failed.empty()) {
+        note(fmt::format("{}: {}; it has no budget", budget.stages.pipeline, budget.stages.failed));
+        continue;
+      }
       add({reports::budget_figure(budget)}, source);
     }
+  }
+
+  // Where a real program ended, what clocks and stamps do is not the pipeline's.
+  bool is_of_its_pipeline(const RunDetail& run) {
+    if (run.score.program_failures.empty()) return true;
+    note(fmt::format("{}, seed {}: a program ended: {}; figures of this run are left out",
+                     run.pipeline, run.seed, failure_text(run.score.program_failures.front())));
+    return false;
   }
 
   bool is_the_archives(const RunDetail& run) {

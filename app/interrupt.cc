@@ -17,10 +17,10 @@ std::atomic<bool> insistence_flag{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
 
 void change_mask(int how, sigset_t* previous) {
-  sigset_t interrupt;
-  sigemptyset(&interrupt);
-  sigaddset(&interrupt, SIGINT);
-  pthread_sigmask(how, &interrupt, previous);
+  sigset_t interruptions;
+  sigemptyset(&interruptions);
+  for (const int number : kInterruptions) sigaddset(&interruptions, number);
+  pthread_sigmask(how, &interruptions, previous);
 }
 
 void throw_if_interrupted() {
@@ -76,22 +76,26 @@ class InterruptibleClocks : public ClockSource {
 
 InterruptHandler::InterruptHandler() {
   struct sigaction action = {};
-  action.sa_handler = [](int) {
+  action.sa_handler = [](int number) {
     if (!interrupt_flag.exchange(true)) return;
     // The third signal meets the default.
-    if (insistence_flag.exchange(true)) std::signal(SIGINT, SIG_DFL);
+    if (insistence_flag.exchange(true)) std::signal(number, SIG_DFL);
   };
   // An interrupted write is resumed, so that the result of a complete run is not lost.
   action.sa_flags = static_cast<int>(SA_RESTART);
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, &previous_);
+  for (std::size_t i = 0; i < kInterruptions.size(); ++i) {
+    sigaction(kInterruptions[i], &action, &previous_[i]);
+  }
   change_mask(SIG_UNBLOCK, &previous_mask_);
 }
 
 InterruptHandler::~InterruptHandler() {
   // In this order: a signal that came too late waits until what is half-written is gone.
   pthread_sigmask(SIG_SETMASK, &previous_mask_, nullptr);
-  sigaction(SIGINT, &previous_, nullptr);
+  for (std::size_t i = 0; i < kInterruptions.size(); ++i) {
+    sigaction(kInterruptions[i], &previous_[i], nullptr);
+  }
 }
 
 bool InterruptHandler::raised() { return interrupt_flag; }

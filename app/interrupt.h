@@ -1,16 +1,17 @@
-// Ctrl-C, which stops jobs at their next frames or after some thousand events of their world, and
-// the simulator with it: the worlds that the command line runs.
+// Ctrl-C and SIGTERM, which stop jobs at their next frames or after some thousand events of their
+// world, and the simulator with it: the worlds that the command line runs.
 //
-//   InterruptHandler handler;                     // while it lives, SIGINT raises a flag
+//   InterruptHandler handler;                     // while it lives, they raise a flag
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
 // The flag stays raised: a signal that came when one piece of work had already ended stops the next
-// one. A second SIGINT raises another flag, on which cli/interrupt_deadline.h ends the program at
+// one. A second signal raises another flag, on which cli/interrupt_deadline.h ends the program at
 // once; a third does so itself. A program that has signal handlers of its own raises the flag in
 // their place.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <memory>
@@ -21,8 +22,11 @@
 
 namespace simbench::app {
 
+// The signals that interrupt work: of the terminal, and of a job's end.
+inline constexpr std::array kInterruptions = {SIGINT, SIGTERM};
+
 // One at a time: signal handlers belong to the process. While it lives, its thread does not hold
-// SIGINT back (reports/text/output_file.h).
+// them back (reports/text/output_file.h).
 class InterruptHandler {
  public:
   InterruptHandler();
@@ -38,7 +42,7 @@ class InterruptHandler {
   static void set(bool raised);
 
  private:
-  struct sigaction previous_ = {};
+  std::array<struct sigaction, kInterruptions.size()> previous_{};
   sigset_t previous_mask_ = {};
 };
 

@@ -32,6 +32,7 @@ void record(const evaluation::PipelineChoice& choice, std::uint64_t seed, Record
     const RecordingCost cost = evaluation::record_run(source, choice, seed, sink);
     writer.end(cost);
     ++made.recorded;
+    if (!cost.program_failures.empty()) ++made.programs_failed;
     for (const std::string& note : cost.notes) warn(note);
   } catch (const RecordingFailed& failure) {
     writer.abandon({failure.what()});

@@ -39,6 +39,7 @@ struct CapturePlan {
 
 struct CapturesMade {
   std::uint64_t recorded = 0;
+  std::uint64_t programs_failed = 0;  // of these: a real program ended too early in them
   std::vector<std::string> warnings{};
 };
 

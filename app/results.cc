@@ -38,6 +38,13 @@ std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan&
   return scores;
 }
 
+// Whether a pipeline's programs ended in every seed of every point.
+bool failed_in_all_runs(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  std::vector<std::uint64_t> failed(plan.pipelines.size());
+  for (const ResponseRow& row : rows) failed[row.pipeline] += row.failed_seeds;
+  return std::ranges::count(failed, plan.points() * plan.seeds) > 0;
+}
+
 reports::Document document_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
                               const std::vector<StudyTable>& tables,
                               const reports::AnswerText& answer) {
@@ -155,7 +162,9 @@ SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTabl
           {.plan = plan, .answer = answer, .figures = figures, .blocks = document.blocks}));
   std::string not_drawn = draw_figure(figures.front(), folder);
   folder.log().put_in_order();
-  return {.tables = plain(document), .not_drawn = std::move(not_drawn)};
+  return {.tables = plain(document),
+          .not_drawn = std::move(not_drawn),
+          .has_failed = failed_in_all_runs(plan, rows)};
 }
 
 }  // namespace simbench::app

@@ -43,8 +43,9 @@ class RunArchive {
 };
 
 struct SweepText {
-  std::string tables;     // for standard output
-  std::string not_drawn;  // why there is no plot; empty where there is one
+  std::string tables;       // for standard output
+  std::string not_drawn;    // why there is no plot; empty where there is one
+  bool has_failed = false;  // a pipeline whose real programs ended too early in every run
 };
 
 // Writes sweep.csv, hosts.csv, sweep.txt, sweep.html, answer.json and, if gnuplot is installed,

@@ -33,7 +33,7 @@ Start here:
   simbench help run               options, with examples: `simbench run --help`
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 3 gate failed, 4 baseline missing,
-130 interrupted.)";
+5 a program of yours failed in every seed, 130 interrupted.)";
 
 bool names_scenario(const std::string& word) {
   if (word.ends_with(".json")) return true;

@@ -28,6 +28,7 @@ enum ExitStatus : int {
   kBadInput = 2,  // of the command line, of a file, of an output folder
   kGateFailed = 3,
   kBaselineMissing = 4,
+  kProgramFailed = 5,  // a pipeline of real programs, in every seed; there are results all the same
   kInterrupted = 130,
 };
 

@@ -82,10 +82,37 @@ void Progress::update(std::uint64_t done, std::uint64_t total) {
   if (style_.json) {
     print_event(done, total);
   } else if (style_.terminal) {
-    draw(done, total);
+    if (was_just_drawn() && done < total) return;
+    draw(static_cast<double>(done) / static_cast<double>(total), total, time_left(done, total));
   } else {
     print_line(done, total);
   }
+}
+
+void Progress::update(const evaluation::PartDone& parts) {
+  if (finished_ || parts.total == 0) return;
+  total_ = parts.total;
+  part_left_s_ = parts.left_s;
+  if (style_.json) {
+    if (!std::isnan(parts.left_s)) print_event(done_, total_);
+  } else if (!style_.terminal) {
+    print_estimate(parts);
+  } else if (!was_just_drawn()) {
+    draw(parts.done / static_cast<double>(parts.total), parts.total, time_left(done_, total_));
+  }
+}
+
+bool Progress::was_just_drawn() const { return drawn_ && clock_() - last_drawn_ < kRedrawInterval; }
+
+// Once, and only of what is worth waiting for.
+void Progress::print_estimate(const evaluation::PartDone& parts) {
+  constexpr double kAMoment = 3;
+  if (has_estimated_ || !(parts.left_s > kAMoment)) return;
+  has_estimated_ = true;
+  const double percent = 100 * parts.done / static_cast<double>(parts.total);
+  out_ << fmt::format("about {} left, by the speed of the first {:.{}f} %\n",
+                      duration_text(parts.left_s), percent, percent < 1 ? 1 : 0)
+       << std::flush;
 }
 
 void Progress::finish() {
@@ -127,32 +154,31 @@ void Progress::print_last_event(const char* event) {
 }
 
 double Progress::left_s(std::uint64_t done, std::uint64_t total) const {
+  if (part_left_s_) return *part_left_s_;
   if (done == 0) return std::numeric_limits<double>::quiet_NaN();
   return elapsed_s() * static_cast<double>(total - done) / static_cast<double>(done);
 }
 
 std::string Progress::time_left(std::uint64_t done, std::uint64_t total) const {
-  if (done == 0) return "";
-  return fmt::format(", {} left", duration_text(left_s(done, total)));
+  const double left = left_s(done, total);
+  return std::isnan(left) ? "" : fmt::format(", {} left", duration_text(left));
 }
 
-void Progress::draw(std::uint64_t done, std::uint64_t total) {
-  const std::chrono::duration<double> now = clock_();
-  if (drawn_ && now - last_drawn_ < kRedrawInterval && done < total) return;
-  const std::string text = fmt::format("{:3} % of {}{}", done * 100 / total,
-                                       amount(done, total, unit_).whole, time_left(done, total));
+void Progress::draw(double share, std::uint64_t total, const std::string& left) {
+  const std::string text = fmt::format("{:3.0f} % of {}{}", std::floor(100 * share),
+                                       amount(0, total, unit_).whole, left);
   // A line that fills the last column would wrap on some terminals.
   const int room = style_.width - 1;
   const int bar = std::min(kWidestBar, room - static_cast<int>(text.size()) - 3);
   std::string line;
   if (bar >= kNarrowestBar) {
-    const auto full = static_cast<int>(static_cast<std::uint64_t>(bar) * done / total);
+    const auto full = static_cast<int>(bar * share);
     line = fmt::format("[{}{}{}{}] ", style_.colour ? kGreen : "", std::string(full, '#'),
                        style_.colour ? kPlain : "", std::string(bar - full, '.'));
   }
   line += text.substr(0, static_cast<std::size_t>(std::max(room, 0)));
   out_ << kEraseLine << line << std::flush;
-  last_drawn_ = now;
+  last_drawn_ = clock_();
   drawn_ = true;
 }
 

@@ -4,6 +4,10 @@
 // never wider than the terminal, erased at the end. Elsewhere (a file, a log): a line at the start
 // and one at every quarter. Colour only on a terminal that has it, if wanted (cli/messages.h).
 //
+// Where real programs run, within runs too: the bar moves, and what is left is by the speed
+// measured so far (evaluation/run/part_progress.h). Elsewhere a line states it once it is known, if
+// it is more than a moment.
+//
 // Work that is counted in bytes shows them in the unit that suits the whole: "1.65 of 3.71 MB".
 //
 // With --json (cli/messages.h) JSON lines, at most eight of progress a second; "eta_s" is null
@@ -61,6 +65,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void update(std::uint64_t done, std::uint64_t total);
+  // Between two of these: a run is under way.
+  void update(const evaluation::PartDone& parts);
   // The work is done, or was interrupted. Erases the bar; later updates are ignored.
   void finish();
   void interrupt();
@@ -73,8 +79,11 @@ class Progress {
   void erase();
   void print_event(std::uint64_t done, std::uint64_t total);
   void print_last_event(const char* event);
-  void draw(std::uint64_t done, std::uint64_t total);
+  // `share` of the total.
+  void draw(double share, std::uint64_t total, const std::string& left);
   void print_line(std::uint64_t done, std::uint64_t total);
+  void print_estimate(const evaluation::PartDone& parts);
+  bool was_just_drawn() const;
 
   std::ostream& out_;
   ProgressStyle style_;
@@ -85,6 +94,9 @@ class Progress {
   std::uint64_t next_quarter_ = 0;
   std::uint64_t done_ = 0;
   std::uint64_t total_ = 0;
+  // As last measured within runs, NaN before; nothing: nobody tells.
+  std::optional<double> part_left_s_;
+  bool has_estimated_ = false;
   bool drawn_ = false;
   bool finished_ = false;
 };
@@ -131,12 +143,17 @@ std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
     std::optional<InterruptDeadline> deadline;
     deadline.emplace(report_interruption,
                      watch.waits_for_end ? Patience::kUntilInsisted : Patience::kMoment);
-    std::optional<Result> result = work([&](std::uint64_t done, std::uint64_t total) {
+    evaluation::Progress report = [&](std::uint64_t done, std::uint64_t total) {
       const std::lock_guard lock(mutex);
       finished = done;
       all = total;
       progress.update(done, total);
-    });
+    };
+    report.on_part = [&](const evaluation::PartDone& parts) {
+      const std::lock_guard lock(mutex);
+      progress.update(parts);
+    };
+    std::optional<Result> result = work(report);
     deadline.reset();
     progress.finish();
     return result;

@@ -83,6 +83,8 @@ bool KernelDiscipline::changes_clock(const timex& request) const {
 
 void KernelDiscipline::apply(const timex& request, AdjustedClock& clock) {
   move_on(clock);
+  const bool only_stops_adjtime = is_single_shot(request) && request.offset == 0;
+  if (changes_clock(request) && !only_stops_adjtime) was_steered_ = true;
   if (is_single_shot(request)) {
     if (!is_read_of_single_shot(request)) adjtime_left_us_ = request.offset;
   } else {
@@ -139,6 +141,7 @@ void KernelDiscipline::update_offset(long offset) {
 }
 
 void KernelDiscipline::forget(AdjustedClock& clock) {
+  was_steered_ = true;
   loop_.clear();
   adjtime_left_us_ = 0;
   second_rate_ppb_ = 0;

@@ -76,6 +76,8 @@ class KernelDiscipline {
   // returns the clock's state.
   int read(std::int64_t reading_ns, const timex& request, long adjtime_before_us, timex& now) const;
   long adjtime_left_us() const { return adjtime_left_us_; }
+  // Whether anybody has set or steered the clock, by a request that changes it or by setting it.
+  bool was_steered() const { return was_steered_; }
 
   // Whether the kernel has work in the next second.
   bool is_moving() const;
@@ -104,6 +106,7 @@ class KernelDiscipline {
   std::int64_t reference_s_ = 0;  // of the last ADJ_OFFSET
   long tick_ = 10'000;            // us in a hundredth of a second
   long adjtime_left_us_ = 0;
+  bool was_steered_ = false;
   int status_ = STA_UNSYNC;
   int leap_state_ = TIME_OK;
   std::optional<std::int64_t> leap_at_s_;

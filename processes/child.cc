@@ -29,6 +29,7 @@
 #include "processes/lesser_user.h"
 #include "processes/readable.h"
 #include "recording/distrusted_folder.h"
+#include "recording/text_fields.h"
 
 namespace simbench::processes {
 namespace {
@@ -277,12 +278,34 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
   link_->reply(value, error, data);
 }
 
-std::string Child::ending(const std::string& reason) {
-  if (!obstacle_.empty()) return fmt::format("{}: {}", name_, obstacle_);
+std::string ProgramEnd::text() const {
+  return fmt::format("{}: {}{}{}", program, how, last_words.empty() ? "" : ": ", last_words);
+}
+
+namespace {
+
+// Cut to what a row's note has room for, at the begin of a character.
+std::string cut(std::string line) {
+  constexpr std::size_t kMost = 300;
+  if (line.size() <= kMost) return line;
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U) --end;
+  return line.substr(0, end) + " [...]";
+}
+
+}  // namespace
+
+ProgramEnd Child::end_of(const std::string& reason) {
+  ProgramEnd ended{.program = printable_name(name_)};
+  if (!obstacle_.empty()) {
+    ended.how = printable_name(obstacle_);
+    return ended;
+  }
   const std::string how = end();
-  const std::string said = log_.last_line();
-  return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,
-                     said.empty() ? "" : ": " + said);
+  ended.how = printable_name(reason.empty() ? how : reason);
+  if (reason.empty()) ended.status = exit_status_;
+  ended.last_words = printable_name(cut(log_.last_line()));
+  return ended;
 }
 
 std::string Child::end() {
@@ -295,6 +318,7 @@ std::string Child::end() {
   if (excess_.empty() && use_) excess_ = use_->excess();
   const bool is_killed = status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGKILL;
   if (excess_.empty() && is_killed && use_) excess_ = use_->excess_of_killed();
+  if (excess_.empty() && status && WIFEXITED(*status)) exit_status_ = WEXITSTATUS(*status);
   use_.reset();
   warden_.end();
   is_started_ = false;

@@ -39,7 +39,9 @@
 //
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
-//   print(child.ending());  // "chronyd: exited with status 1: Could not open configuration file"
+//   const ProgramEnd end = child.end_of();
+//   print(end.text());  // "chronyd: exited with status 1: Could not open configuration file"
+//   if (end.status == 0) print("it has done what it was asked to");
 #pragma once
 
 #include <sys/types.h>
@@ -63,6 +65,17 @@
 #include "processes/warden.h"
 
 namespace simbench::processes {
+
+// How a program ended. The texts are printable lines, whatever the program wrote.
+struct ProgramEnd {
+  std::string program{};        // its name, "chronyd"
+  std::string how{};            // "exited with status 1"
+  std::string last_words{};     // the last line of its output, cut; empty: it said nothing
+  std::optional<int> status{};  // its exit status; nothing: it did not exit by itself
+
+  // "chronyd: exited with status 1: Could not open configuration file".
+  std::string text() const;
+};
 
 class Child {
  public:
@@ -117,16 +130,18 @@ class Child {
   // What it and all that it started use, for links of the latter; empty once it has ended.
   const std::shared_ptr<ProgramUse>& use() const { return use_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
-  // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
-  // output.
-  std::string ending(const std::string& reason = "");
+  // Kills it if it still runs; says how it ended, or in place of that the reason for killing it. To
+  // be called once.
+  ProgramEnd end_of(const std::string& reason = "");
+  // The same as a text.
+  std::string ending(const std::string& reason = "") { return end_of(reason).text(); }
 
  private:
   // Returns why it cannot be started, or nothing.
   std::string start(const Settings& settings, int& link);
   void follow_thread();
   bool is_within_limits(std::chrono::steady_clock::duration waited);
-  // Returns how it ended.
+  // Returns how it ended, and sets its exit status.
   std::string end();
   std::string how_it_ended(std::optional<int> status) const;
 
@@ -143,6 +158,7 @@ class Child {
   std::string excess_;                              // the limit that it has passed
   Served served_;
   int cpu_ = -1;  // the one that it is bound to
+  std::optional<int> exit_status_;
 };
 
 // Whether a program of these settings would be root's and stay it, and why: one line, or empty.

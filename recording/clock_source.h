@@ -25,6 +25,7 @@
 
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
+#include "recording/share_done.h"
 #include "recording/true_time.h"
 #include "recording/world_observer.h"
 
@@ -41,6 +42,7 @@ struct ClockRequest {
   Nanoseconds master_lost_for{};  // from `duration` on nobody reaches the master; 0: never
   Nanoseconds recovery{};         // after that
   const std::atomic<bool>* cancel = nullptr;
+  ShareDone share_done{};  // empty: nobody asks
 };
 
 class ClockSink {
@@ -52,6 +54,8 @@ class ClockSink {
   virtual void on_errors(TrueTime at, std::span<const double> errors_s) = 0;
   // How the synchronisation ended on a slave; of those that come to it late, twice.
   virtual void on_outcome(const SyncOutcome& /*outcome*/) {}
+  // A real program of a host ended too early.
+  virtual void on_program_failure(const ProgramFailure& /*failure*/) {}
   // As WorldObserver has it.
   virtual void on_message(const ObservedMessage& /*message*/) {}
 };

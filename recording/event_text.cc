@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kFrameKind = "frame";
 // The kinds of RecordingEvent, in its order.
 constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
-    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays"};
+    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays", "program"};
 static_assert(!kKinds.back().empty(), "every event has a kind");
 
 template <class Value, class Event>
@@ -112,6 +112,15 @@ void members(const auto& form, Any<SessionDelays> auto& delays) {
   form("set_ns", delays.set);
 }
 
+void members(const auto& form, Any<ProgramFailure> auto& failure) {
+  form("host", failure.host);
+  form("at_ns", failure.at);
+  form.inner("program", failure.program);
+  form.inner("how", failure.how);
+  form.inner("last_words", failure.last_words);
+  form("log", failure.log);
+}
+
 constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamKind::kDepth),
                                                       scenarios::to_text(StreamKind::kColour)};
 constexpr std::array<std::string_view, 3> kDomains = {"hardware_clock", "system_time",
@@ -184,6 +193,7 @@ struct Writer {
     line += ',';
     append_escaped(line, text);
   }
+  void inner(const char* name, const std::string& text) const { (*this)(name, text); }
   void operator()(const char* /*name*/, Nanoseconds interval) const {
     append_field(line, interval.count());
   }
@@ -205,7 +215,9 @@ struct Reader {
 
   void operator()(const char* name, bool& flag) const { flag = read_flag(fields, name); }
   void operator()(const char* name, double& value) const { value = fields.finite(name); }
+  // The last member; inner(): others.
   void operator()(const char* name, std::string& text) const { text = fields.text(name); }
+  void inner(const char* name, std::string& text) const { text = fields.inner_text(name); }
   void operator()(const char* name, Nanoseconds& interval) const {
     interval = Nanoseconds(fields.whole<std::int64_t>(name));
   }

@@ -17,6 +17,7 @@
 //   alignment,camera,aligned,controls,message
 //   led,camera,sensor_us,led_start_ns,led_end_ns
 //   delays,slave,pass,begin_steady_ns,end_steady_ns,t_l_ns,t_t_ns,t_d_ns,get_ns,set_ns
+//   program,host,at_ns,program,how,last_words,log
 //
 // Errors: from_line throws EventTextError, with the column and what was found, for whatever to_line
 // does not write. Any bytes are safe to give to it. Complexity: linear in the line.

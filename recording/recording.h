@@ -41,6 +41,7 @@
 #include "algorithms/ports/clock_adjustment.h"
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
+#include "recording/share_done.h"
 #include "recording/true_time.h"
 #include "scenarios/choices.h"
 
@@ -124,13 +125,15 @@ struct ExchangeEvent {
 //   ExchangeEvent    an exchange of host synchronisation
 //   SyncOutcome      how host synchronisation ended on a slave
 //   SessionDelays    what a slave measured in a pass of a session of Algorithms 1 and 2, and added
+//   ProgramFailure   a real program of a host ended too early
 //   AlignmentReport  how far a steered camera is; steered captures only
 //   LedSighting      captures with a clock of LEDs only; after its frame, before the camera's next
 //
 // A new kind is a struct, a place here and its line of text (event_text.cc): what keeps, writes,
 // forwards and forks events takes it from there.
-using RecordingEvent = std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent,
-                                    SyncOutcome, AlignmentReport, LedSighting, SessionDelays>;
+using RecordingEvent =
+    std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent, SyncOutcome,
+                 AlignmentReport, LedSighting, SessionDelays, ProgramFailure>;
 
 // Handles an event by its type:
 //
@@ -200,6 +203,7 @@ struct RecordingRequest {
   // Once true, a simulated world ends with RecordingCancelled; outlives the call. A signal handler
   // may set it.
   const std::atomic<bool>* cancel = nullptr;
+  ShareDone share_done{};  // of a simulated world; empty: nobody asks
 };
 
 // The cost of the recording; for the performance line.
@@ -212,6 +216,8 @@ struct RecordingCost {
   // What went wrong, a line each for the user: a host that was lost, a camera that was unplugged.
   // The recording holds what came before.
   std::vector<std::string> notes{};
+  // Real programs that ended too early, which are among the notes: what the run has is not theirs.
+  std::vector<ProgramFailure> program_failures{};
 };
 
 // A capture that could not be made; what() is one line that says why. Other captures of the same

@@ -150,6 +150,20 @@ std::string FieldReader::text(const char* name) {
   field_ = rest_;
   rest_ = {};
   done_ = true;
+  return unescaped(name);
+}
+
+std::string FieldReader::inner_text(const char* name) {
+  std::size_t comma = 0;
+  while (comma < rest_.size() && rest_[comma] != ',') comma += rest_[comma] == '\\' ? 2 : 1;
+  if (done_ || comma >= rest_.size()) fail_missing(name);
+  ++column_;
+  field_ = rest_.substr(0, comma);
+  rest_.remove_prefix(comma + 1);
+  return unescaped(name);
+}
+
+std::string FieldReader::unescaped(const char* name) const {
   std::string text;
   text.reserve(field_.size());
   for (std::size_t i = 0; i < field_.size(); ++i) {

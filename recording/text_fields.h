@@ -122,8 +122,10 @@ class FieldReader {
     return whole_of_field<Number>(name);
   }
   double finite(const char* name);
-  // A text is the last field of its line.
+  // A text that is the last field of its line.
   std::string text(const char* name);
+  // One that is followed by another field.
+  std::string inner_text(const char* name);
 
   // Throws if there is another field.
   void end() const;
@@ -149,6 +151,8 @@ class FieldReader {
     }
     return value;
   }
+  // The field that was read last, as append_escaped() wrote it.
+  std::string unescaped(const char* name) const;
   [[noreturn]] void fail_missing(const char* name) const;
   [[noreturn]] void fail_range(const char* name, const std::string& from,
                                const std::string& to) const;

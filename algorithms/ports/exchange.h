@@ -48,6 +48,17 @@ struct SyncOutcome {
   std::string message;  // empty, or why it failed and what would help
 };
 
+// A real program of a host (host_sync by programs, docs/your_program.md) ended before its work was
+// done. From then on the host's clock is its own, so no number of the run is the program's.
+struct ProgramFailure {
+  PeerId host = 0;
+  std::string program{};     // "chronyd"
+  Nanoseconds at{0};         // true time since the run began
+  std::string how{};         // "exited with status 1"
+  std::string last_words{};  // the last line of its output; empty: it said nothing
+  std::string log{};         // the file that has its output; empty: nobody kept it
+};
+
 // What a capture alignment thinks it has reached with a camera (capture_alignment.h). The newest
 // report of a camera counts.
 struct AlignmentReport {

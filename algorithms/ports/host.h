@@ -210,6 +210,9 @@ class Host {
   // Reports an exchange, or how the synchronisation of a host ended, to the recording.
   virtual void report_exchange(const Exchange& exchange) = 0;
   virtual void report_outcome(const SyncOutcome& outcome) = 0;
+  // Reports that a real program of the host ended too early; only hosts that run some have a use
+  // for it.
+  virtual void report_program_failure(const ProgramFailure& /*failure*/) {}
   // Reports what a slave measured in a pass of its session; a host without a recording has no use
   // for it.
   virtual void report_delays(const SessionDelays& /*delays*/) {}

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -33,7 +34,8 @@ Examples:
 
 --collect fetches what the nodes of a rig still have of a session whose conductor was killed.
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 5 a program failed in every seed,
+130 interrupted.)";
 
 struct RecordOptions {
   std::string scenario;
@@ -118,7 +120,10 @@ int record(RecordOptions options) {
   }
   print_note(fmt::format("{} of {} recorded in {}", made.recorded, counted(wanted, "capture"),
                          options.output));
-  return kOk;
+  const auto of_programs = std::ranges::count_if(
+      choices, [](const auto& choice) { return choice.pipeline.programs.has_value(); });
+  const std::uint64_t all_failed = static_cast<std::uint64_t>(of_programs) * options.repeats;
+  return all_failed > 0 && made.programs_failed == all_failed ? kProgramFailed : kOk;
 }
 
 }  // namespace

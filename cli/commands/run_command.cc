@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/program_options.h"
+#include "cli/program_runs.h"
 #include "cli/progress.h"
 #include "cli/rig_backend.h"
 #include "evaluation/budget/pipeline_budget.h"
@@ -40,7 +42,8 @@ Examples:
 On a real rig it captures each pipeline --seeds times (default: once) and prints the simulator's
 prediction for the same scenario beside the measured values.
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 5 a program failed in every seed,
+130 interrupted.)";
 
 struct RunOptions {
   std::string scenario;
@@ -115,7 +118,9 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
   print_result(options.format == "json"
                    ? reports::budget_json(report)
                    : reports::drawn_as(options.format, reports::budget_document(report)));
-  return kOk;
+  const bool has_failed = std::ranges::any_of(
+      report.budgets, [](const auto& budget) { return !budget.stages.failed.empty(); });
+  return has_failed ? kProgramFailed : kOk;
 }
 
 // Refuses options that cannot be combined with --budget.
@@ -197,6 +202,11 @@ int run(RunOptions options) {
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
   if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(archive));
+  if (const std::string note =
+          programs_note(scenario, options.evaluation.pipelines, options.evaluation.seeds);
+      !note.empty()) {
+    print_note(note);
+  }
   if (options.budget) return run_budgets(options, scenario);
   archive.open(options.output);
   evaluation::EvaluationOptions evaluation = options.evaluation;
@@ -212,7 +222,7 @@ int run(RunOptions options) {
   }
   if (!answer) return kInterrupted;
   print_result(app::results_text(*results, scenario, options.format, options.detail(), *answer));
-  return kOk;
+  return status_of(*results);
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ In the folder: sweep.csv has a line for each point, pipeline and seed, hosts.csv
 of these, sweep.txt the answer and the tables, sweep.html the same as a page with its figures,
 sweep.svg the plot (drawn by gnuplot), runs.log the finished runs.
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 5 a program failed in every seed,
+130 interrupted.)";
 
 // Checking fewer takes no time to speak of.
 constexpr std::size_t kManyPoints = 1000;
@@ -195,7 +196,7 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
   const app::SweepText text = app::write_sweep_results(plan, tables, folder);
   if (!text.not_drawn.empty()) print_warnings({text.not_drawn});
   print_result(text.tables);
-  return kOk;
+  return text.has_failed ? kProgramFailed : kOk;
 }
 
 }  // namespace

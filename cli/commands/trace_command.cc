@@ -16,6 +16,7 @@
 #include "evaluation/run/leaderboard.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "recording/collected.h"
+#include "recording/program_failure.h"
 #include "reports/text/output_file.h"
 #include "reports/timeline/trace.h"
 #include "reports/timeline/trace_recorder.h"
@@ -37,7 +38,7 @@ Examples:
   simbench trace --scenario 6cam_2host_30fps --from-ms 0 --to-ms 2000 -o sync.json
   simbench trace --scenario 18cam_6host_45fps --pipeline ntp_w32time --format csv -o ntp.csv
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 5 a program failed, 130 interrupted.)";
 
 struct TraceCommandOptions {
   std::string scenario;
@@ -135,7 +136,8 @@ int run_trace(const TraceCommandOptions& options) {
   if (options.format == "csv") {
     for (const std::string& note : reports::trace_csv_notes(*trace)) print_note(note);
   }
-  return kOk;
+  print_warnings(failure_lines(trace->program_failures));
+  return trace->program_failures.empty() ? kOk : kProgramFailed;
 }
 
 void add_window_options(Command& command, TraceCommandOptions& options) {

@@ -18,6 +18,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/program_options.h"
+#include "cli/program_runs.h"
 #include "cli/progress.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/statistics/statistics.h"
@@ -51,7 +52,8 @@ Examples:
   simbench validate-model --scenario 6node_relay --measured study.json --format json
   simbench validate-model --scenario 6node_relay --stack network_stack.json
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 5 a program failed in every seed,
+130 interrupted.)";
 
 struct ValidateModelOptions {
   std::string scenario;
@@ -239,7 +241,7 @@ int validate_model(ValidateModelOptions options) {
   });
   if (!simulated) return kInterrupted;
   print_result(model_gap_text(reports::model_gap_report(*study, *simulated), options.format));
-  return kOk;
+  return status_of(*simulated);
 }
 
 void add_measurement_options(Command& command, ValidateModelOptions& options) {

@@ -10,6 +10,7 @@
 #include "algorithms/device_time/variants.h"
 #include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
+#include "evaluation/scoring/program_failures.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -112,6 +113,9 @@ RowStanding standing_of_stages(const Row& row, RankedBy ranked_by) {
 }
 
 ReasonedStanding standing_of(const Row& row, RankedBy ranked_by) {
+  if (!row.program_failures.empty()) {
+    return {.is = RowStanding::kFailed, .reason = program_failure_text(row)};
+  }
   const RowStanding of_stages = standing_of_stages(row, ranked_by);
   if (of_stages != RowStanding::kRanked) return {.is = of_stages};
   std::string failure = failure_of(row, ranked_by);

@@ -6,10 +6,12 @@
 // ranked, cameras that follow a trigger).
 //
 // A pipeline that a rig can run has failed if what it is for did not happen, in any of the seeds:
-// a host was not synchronised, or a program ended (either is an unsynchronised host), nothing was
-// recorded, or it found no set of one pulse though cameras delivered whole pulses. A small error of
-// what remains then says nothing, so failed rows are neither ranked nor compared. Whether a pulse
-// is found whole does not count where rows are ranked by clocks or exposures alone.
+// a host was not synchronised, nothing was recorded, or it found no set of one pulse though cameras
+// delivered whole pulses. A small error of what remains then says nothing, so failed rows are
+// neither ranked nor compared. Whether a pulse is found whole does not count where rows are ranked
+// by clocks or exposures alone. A row of real programs has failed, whatever its stages, if one of
+// them ended too early in any of the seeds, which then have no values
+// (scoring/program_failures.h).
 //
 //   const ReasonedStanding standing = standing_of(row, ranking_of(results));
 //   if (standing.is == RowStanding::kFailed) print(standing.reason);

@@ -10,6 +10,7 @@
 
 #include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
+#include "evaluation/scoring/program_failures.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/ideal.h"
 
@@ -149,6 +150,7 @@ struct WorldScores {
   BySeed set_absolute_error_ms = BySeed(StageSet::kSets);
   BySeed absolute_error_ms = BySeed(StageSet::kSets);
   BySeed physical_ms = BySeed(StageSet::kSets);
+  std::string failed{};  // the first program that ended in any of the worlds
 };
 
 // Stages that are not `present` make no difference.
@@ -165,6 +167,7 @@ void repeat_without_absent(StageSet present, WorldScores& scores) {
 
 void set_scores(StageSet ideal, const Row& row, WorldScores& scores) {
   const std::size_t world = ideal.bits();
+  if (scores.failed.empty()) scores.failed = program_failure_text(row);
   for (const SeedScore& seed : row.seeds) {
     scores.set_amd_ms[world].push_back(seed.set_amd_ms);
     scores.set_absolute_error_ms[world].push_back(seed.set_absolute_error_ms);
@@ -201,6 +204,8 @@ Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline&
   budget.pipeline = pipeline.name;
   budget.is_steered = is_steered(pipeline);
   budget.has_polls = has_polls(scenario, pipeline);
+  budget.failed = scores.failed;
+  if (!budget.failed.empty()) return budget;
   budget.amd_of_sets = all_exist(scores.set_absolute_error_ms);  // of one camera too
   budget.amd_ms = divide(budget.amd_of_sets ? scores.set_amd_ms : scores.amd_ms);
   budget.absolute_error_ms =

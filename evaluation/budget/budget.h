@@ -133,6 +133,8 @@ struct Budget {
   bool is_steered = false;  // by a capture_alignment
   bool has_polls = false;
   bool amd_of_sets = true;
+  // Why there is none: a real program ended too early in one of the runs. Empty: there is one.
+  std::string failed{};
   ErrorParts amd_ms;
   ErrorParts absolute_error_ms;
   ErrorParts physical_ms;

@@ -8,6 +8,7 @@
 
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "evaluation/scoring/program_failures.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/ideal.h"
@@ -43,6 +44,7 @@ Pipeline with_cheap_stages(Pipeline pipeline) {
 struct ErrorsByWorld {
   std::vector<std::vector<double>> by_world;  // then by seed, ms
   std::string first_note;                     // of any world
+  std::string failed;                         // the first program that ended in any of them
 };
 
 void add_world(const Scenario& world, const WorldFactory& make_world,
@@ -57,6 +59,7 @@ void add_world(const Scenario& world, const WorldFactory& make_world,
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
     const Row& row = results.rows[i];
     errors[i].by_world.push_back(row.host_error_ms.values);
+    if (errors[i].failed.empty()) errors[i].failed = program_failure_text(row);
     if (errors[i].first_note.empty() && !row.notes.empty()) {
       errors[i].first_note = row.notes.front();
     }
@@ -77,6 +80,10 @@ std::size_t drop_incomplete_seeds(std::vector<std::vector<double>>& by_world) {
 }
 
 void divide_host_clock(ErrorsByWorld& errors, HostClockBudget& budget) {
+  if (!errors.failed.empty()) {
+    budget.note = errors.failed;
+    return;
+  }
   const std::size_t seeds = errors.by_world.front().size();
   const std::size_t dropped = drop_incomplete_seeds(errors.by_world);
   if (dropped > 0) {

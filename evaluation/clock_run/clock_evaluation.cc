@@ -11,7 +11,9 @@
 
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/run/jobs.h"
+#include "evaluation/run/part_progress.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "evaluation/scoring/program_failures.h"
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/loader.h"
@@ -34,8 +36,9 @@ const char* lacking_world(const PipelineChoice& choice) {
 }
 
 struct Chosen {
-  std::vector<PipelineChoice> choices;
-  std::vector<std::string> left_out;
+  std::vector<PipelineChoice> choices{};
+  std::vector<std::string> left_out{};           // notes on these
+  std::vector<std::string> programs_left_out{};  // names of those of programs
 };
 
 Chosen choose_clock_runs(const Scenario& scenario, const std::vector<std::string>& names) {
@@ -50,6 +53,7 @@ Chosen choose_clock_runs(const Scenario& scenario, const std::vector<std::string
     if (!choice.problem.empty()) {
       chosen.left_out.push_back(
           fmt::format("pipeline {}: {}; left out", choice.pipeline.name, choice.problem));
+      chosen.programs_left_out.push_back(choice.pipeline.name);
       continue;
     }
     if (const char* what = lacking_world(choice)) {
@@ -95,6 +99,8 @@ class ClockEvaluation {
         options_(options),
         progress_(progress),
         chosen_(choose_clock_runs(scenario, options.pipelines)),
+        order_(programs_first(of_programs())),
+        parts_(progress, part_plan(of_programs(), options.seeds, worker_count(options.jobs))),
         jobs_(chosen_.choices.size() * options.seeds) {}
 
   ClockResults run() {
@@ -131,16 +137,31 @@ class ClockEvaluation {
     std::optional<ClockReadings> readings;  // of the first seed
   };
 
+  std::vector<bool> of_programs() const {
+    std::vector<bool> found;
+    for (const PipelineChoice& choice : chosen_.choices) {
+      found.push_back(choice.pipeline.programs.has_value());
+    }
+    return found;
+  }
+
   void run_job(std::size_t job, ClockSource& source) {
-    const PipelineChoice& choice = chosen_.choices[job % chosen_.choices.size()];
-    const std::uint64_t seed = options_.first_seed + job / chosen_.choices.size();
-    run_named({scenario_.name, choice.pipeline.name, seed},
-              [&] { jobs_[job] = score_of(choice, seed, source); });
+    const std::size_t pipelines = chosen_.choices.size();
+    const std::size_t place = order_[job % pipelines];
+    const PipelineChoice& choice = chosen_.choices[place];
+    const std::uint64_t seed = options_.first_seed + job / pipelines;
+    parts_.begin(job);
+    run_named({scenario_.name, choice.pipeline.name, seed}, [&] {
+      jobs_[job / pipelines * pipelines + place] =
+          score_of(choice, seed, source, parts_.share_of(job));
+    });
+    parts_.end(job);
     const std::lock_guard lock(mutex_);
     if (progress_) progress_(++done_, jobs_.size());
   }
 
-  Scored score_of(const PipelineChoice& choice, std::uint64_t seed, ClockSource& source) const {
+  Scored score_of(const PipelineChoice& choice, std::uint64_t seed, ClockSource& source,
+                  const ShareDone& share_done) const {
     const std::unique_ptr<HostSync> host_sync = choice.host_sync.make();
     const ClockSpan span = span_of(scenario_, options_);
     ClockScorer scorer(span);
@@ -149,9 +170,10 @@ class ClockEvaluation {
                                        .host_sync = host_sync.get(),
                                        .duration = span.duration,
                                        .interval = kReadingInterval,
-                                       .master_lost_for = kMasterLostFor,
-                                       .recovery = kRecovery,
-                                       .cancel = options_.cancel},
+                                       .master_lost_for = lost_for(),
+                                       .recovery = recovery(),
+                                       .cancel = options_.cancel,
+                                       .share_done = share_done},
                                       scorer);
     ClockScore score = scorer.finish(cost.messages);
     Scored scored;
@@ -159,15 +181,20 @@ class ClockEvaluation {
     scored.seed.seed = seed;
     scored.seed.host_errors_ms = std::move(score.host_errors_ms);
     scored.seed.failures = std::move(score.failures);
+    scored.seed.program_failures = std::move(score.program_failures);
     scored.seed.cost = {.events = cost.events,
-                        .simulated_seconds = to_seconds(span.duration + kMasterLostFor + kRecovery),
+                        .simulated_seconds = to_seconds(span.duration + lost_for() + recovery()),
                         .trace_hash = cost.trace_hash,
                         .notes = host_sync->notes()};
+    void_score(scored.seed);
     scored.curves = std::move(score.curves);
     scored.hosts = {.to_truth = std::move(score.to_truth), .pairs = std::move(score.pairs)};
     if (seed == options_.first_seed) scored.readings = std::move(score.readings);
     return scored;
   }
+
+  Nanoseconds lost_for() const { return options_.loses_master ? kMasterLostFor : Nanoseconds(0); }
+  Nanoseconds recovery() const { return options_.loses_master ? kRecovery : Nanoseconds(0); }
 
   ClockResults results() {
     ClockResults all;
@@ -181,6 +208,7 @@ class ClockEvaluation {
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.warnings = chosen_.left_out;
+    results.programs_left_out = chosen_.programs_left_out;
     results.load_reality = scenarios::load_reality(scenario_);
     all.follows = scenario_.hosts.follows;
     RowSetting setting = row_setting(scenario_);
@@ -210,7 +238,9 @@ class ClockEvaluation {
   const ClockOptions& options_;
   const Progress& progress_;
   const Chosen chosen_;
-  std::vector<Scored> jobs_;  // each written by one worker
+  const std::vector<std::size_t> order_;  // in which the pipelines of a seed run
+  PartProgress parts_;
+  std::vector<Scored> jobs_;  // by seed, then pipeline; each written by one worker
   std::mutex mutex_;          // guards what follows
   std::uint64_t done_ = 0;
   CpuTime cpu_time_;

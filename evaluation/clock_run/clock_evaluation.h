@@ -40,6 +40,9 @@ struct ClockOptions {
   std::uint64_t duration_s = 36'000;
   // The time since the cold start from which spread, errors and stability count.
   std::uint64_t from_s = 300;
+  // Whether the master is lost then, and what follows is simulated too. Without it there are
+  // neither holdover nor recovery.
+  bool loses_master = true;
   // The others are those of EvaluationOptions.
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 8;
@@ -62,6 +65,7 @@ struct ClockResults {
   std::vector<std::int64_t> follows{};    // whom each host follows; empty: all the master
   std::vector<ClockReadings> readings{};  // by row, of the first seed
   ClockCauses causes{};                   // of the best row, if somebody asked (clock_causes.h)
+  std::string period_note{};              // who chose how long they run, a sentence; mostly empty
 };
 
 // Over the seeds, of which there is one at least.

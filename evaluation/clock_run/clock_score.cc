@@ -158,7 +158,20 @@ void ClockScorer::watch_loss(Nanoseconds since_loss, std::span<const double> err
   if (spread_ms > spread_max_ms_) last_apart_ = since_loss - kMasterLostFor + kReadingInterval;
 }
 
+// A place for each host all the same.
+ClockScore ClockScorer::without_values() {
+  ClockScore score;
+  score.host_errors_ms.assign(span_.hosts, kNan);
+  score.to_truth.resize(span_.hosts);
+  score.pairs.resize(span_.hosts);
+  score.failures = failures_.take();
+  score.program_failures = std::move(program_failures_);
+  score.readings.errors_s.resize(span_.hosts);
+  return score;
+}
+
 ClockScore ClockScorer::finish(std::uint64_t messages) {
+  if (!program_failures_.empty()) return without_values();
   ClockScore score;
   MetricValues<double>& values = score.values;
   values.clock_spread_ms = spread_sum_ms_ / static_cast<double>(measured_);

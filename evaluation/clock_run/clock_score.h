@@ -77,6 +77,8 @@ struct ClockScore {
   std::vector<HostTe> to_truth{};
   std::vector<HostTe> pairs{};
   std::vector<SyncOutcome> failures{};  // of host synchronisation
+  // Real programs that ended: where there is one, no value, curve or reading of the run is here.
+  std::vector<ProgramFailure> program_failures{};
   StabilityCurves curves{};
   ClockReadings readings{};
 };
@@ -89,11 +91,15 @@ class ClockScorer final : public ClockSink {
   void on_master(double error_s) override { master_error_s_ = error_s; }
   void on_errors(TrueTime at, std::span<const double> errors_s) override;
   void on_outcome(const SyncOutcome& outcome) override { failures_.add(outcome); }
+  void on_program_failure(const ProgramFailure& failure) override {
+    program_failures_.push_back(failure);
+  }
 
   // After the run, once. `messages`: those sent in `duration`.
   ClockScore finish(std::uint64_t messages);
 
  private:
+  ClockScore without_values();
   void measure(std::span<const double> errors_s, double spread_ms);
   void halve();
   void watch_loss(Nanoseconds since_loss, std::span<const double> errors_s, double spread_ms);
@@ -109,6 +115,7 @@ class ClockScorer final : public ClockSink {
   double spread_max_ms_ = 0;
   TimeErrors errors_;
   SyncFailures failures_;
+  std::vector<ProgramFailure> program_failures_;
   std::array<std::optional<TrueTime>, 3> last_above_{};
   double holdover_60_ms_ = kNan;
   double holdover_600_ms_ = kNan;

@@ -55,6 +55,9 @@ class ResidenceTap final : public ClockSink {
     sink_.on_errors(at, errors_s);
   }
   void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
+  void on_program_failure(const ProgramFailure& failure) override {
+    sink_.on_program_failure(failure);
+  }
   void on_message(const ObservedMessage& message) override {
     sink_.on_message(message);
     if (message.from != 0 || message.lost) return;

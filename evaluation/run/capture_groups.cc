@@ -64,7 +64,7 @@ SharedCapture::SharedCapture(const scenarios::Scenario& scenario,
   }
 }
 
-void SharedCapture::record(RecordingSource& source) {
+void SharedCapture::record(RecordingSource& source, const ShareDone& share_done) {
   std::vector<RecordingSink*> sinks;
   for (const Member& member : members_) {
     sinks.push_back(member.view ? member.view.get() : member.scorer.get());
@@ -72,7 +72,7 @@ void SharedCapture::record(RecordingSource& source) {
   ForkedSink fork(sinks);
   std::exception_ptr failure;
   try {
-    cost_ = record_run(source, recorded_, seed_, fork);
+    cost_ = record_run(source, recorded_, seed_, fork, nullptr, share_done);
   } catch (...) {
     failure = std::current_exception();
   }

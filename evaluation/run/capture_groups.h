@@ -55,7 +55,7 @@ class SharedCapture {
                 const std::vector<std::size_t>& group, std::uint64_t seed);
 
   // Records it with the first choice of the group, to scorers of all. Keeps what goes wrong. Once.
-  void record(RecordingSource& source);
+  void record(RecordingSource& source, const ShareDone& share_done = {});
 
   // The score of a member, by its place in the group; once for each. Throws what went wrong with it
   // or with the capture.

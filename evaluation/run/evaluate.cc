@@ -11,6 +11,7 @@
 
 #include "evaluation/run/capture_groups.h"
 #include "evaluation/run/jobs.h"
+#include "evaluation/run/part_progress.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/rows.h"
@@ -47,6 +48,9 @@ class EvaluationRun {
         choices_(std::move(choices)),
         groups_(options.share_captures ? capture_groups(scenario, choices_)
                                        : single_captures(choices_)),
+        order_(programs_first(groups_of_programs())),
+        parts_(progress,
+               part_plan(groups_of_programs(), options.seeds, worker_count(options.jobs))),
         scores_(choices_.size() * options.seeds) {}
 
   Results run() {
@@ -75,14 +79,24 @@ class EvaluationRun {
   }
 
  private:
+  std::vector<bool> groups_of_programs() const {
+    std::vector<bool> of_programs;
+    for (const std::vector<std::size_t>& group : groups_) {
+      of_programs.push_back(choices_[group.front()].pipeline.programs.has_value());
+    }
+    return of_programs;
+  }
+
   // A capture and the scores of its pipelines. Jobs of one seed are neighbours, so that the
   // remaining time follows from the elapsed time.
   void run_job(std::size_t job, RecordingSource& source) {
-    const std::vector<std::size_t>& group = groups_[job % groups_.size()];
+    const std::vector<std::size_t>& group = groups_[order_[job % groups_.size()]];
     const std::uint64_t number = job / groups_.size();
     const std::uint64_t seed = options_.first_seed + number;
     SharedCapture capture(scenario_, choices_, group, seed);
-    capture.record(source);
+    parts_.begin(job);
+    capture.record(source, parts_.share_of(job));
+    parts_.end(job);
     for (std::size_t member = 0; member < group.size(); ++member) {
       std::optional<SeedScore>& score = scores_[number * choices_.size() + group[member]];
       run_named({scenario_.name, choices_[group[member]].pipeline.name, seed}, [&] {
@@ -178,6 +192,8 @@ class EvaluationRun {
   const Progress& progress_;
   const std::vector<PipelineChoice> choices_;
   const CaptureGroups groups_;
+  const std::vector<std::size_t> order_;  // in which the groups of a seed run
+  PartProgress parts_;
   // By seed, then by choice; each written by one worker.
   std::vector<std::optional<SeedScore>> scores_;
   std::mutex mutex_;  // guards what follows

@@ -9,7 +9,7 @@
 // row, whose notes have the reason and the notes of other captures (RecordingCost::notes).
 //
 // With one thread the source is called in order: every pipeline at the first seed, then at the
-// next.
+// next; of one seed, those of real programs first.
 //
 //   Results r = evaluate(scenario, [&] { return make_simulation(scenario); },
 //                        {.seeds = 32, .share_captures = true}, nullptr);
@@ -48,8 +48,23 @@ struct EvaluationOptions {
   const std::atomic<bool>* cancel = nullptr;
 };
 
-// Called from worker threads, one call at a time; must not throw.
-using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+// How far runs are, and how long the rest takes by the speed that was measured until then
+// (part_progress.h).
+struct PartDone {
+  double done = 0;  // runs, those under way by the share of their time that is over
+  std::uint64_t total = 0;
+  double left_s = kNan;  // NaN: too little was measured
+};
+
+// Told how many runs are done. Called from worker threads, one call at a time; must not throw.
+class ProgressCallback : public std::function<void(std::uint64_t done, std::uint64_t total)> {
+ public:
+  using function::function;
+  // Also told in between, where real programs run: one run of theirs may take minutes. Empty:
+  // nobody asks.
+  std::function<void(const PartDone&)> on_part{};
+};
+using Progress = ProgressCallback;
 // Makes the backend of one worker thread; called once per thread, from that thread.
 using SourceFactory = std::function<std::unique_ptr<RecordingSource>()>;
 // Makes the backend for a scenario, which outlives it; called from worker threads.

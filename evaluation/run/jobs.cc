@@ -101,10 +101,13 @@ bool JobQueue::finish() const {
   return done_ == count_;
 }
 
+std::size_t worker_count(unsigned threads) {
+  return threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+}
+
 bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
                            const WorkerFactory& make_worker) {
-  const std::size_t wanted =
-      options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t wanted = worker_count(options.threads);
   JobQueue queue(count, options.cancel);
   {
     std::vector<std::jthread> others;

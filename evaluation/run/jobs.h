@@ -42,6 +42,9 @@ using Job = std::function<void(std::size_t job)>;
 // Makes the worker of one thread; called on that thread.
 using WorkerFactory = std::function<Job()>;
 
+// How many threads that is: `threads`, or one for every core if it is 0.
+std::size_t worker_count(unsigned threads);
+
 // Both return whether all jobs ran: false only if they were cancelled.
 bool run_jobs(std::size_t count, const JobOptions& options, const Job& job);
 bool run_jobs_with_workers(std::size_t count, const JobOptions& options,

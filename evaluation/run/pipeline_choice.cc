@@ -17,6 +17,9 @@
 #include "algorithms/ports/host_sync.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/program_failures.h"
+#include "recording/forwarding_sink.h"
+#include "recording/program_failure.h"
 #include "scenarios/calibration.h"
 #include "scenarios/camera_groups.h"
 #include "scenarios/document.h"
@@ -475,21 +478,46 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   return setup;
 }
 
+namespace {
+
+// Keeps the failures of programs that pass.
+class ProgramWatch final : public ForwardingSink {
+ public:
+  using ForwardingSink::ForwardingSink;
+  void on_event(const RecordingEvent& event) override {
+    if (const auto* failure = std::get_if<ProgramFailure>(&event)) failures.push_back(*failure);
+    sink().on_event(event);
+  }
+
+  std::vector<ProgramFailure> failures;
+};
+
+}  // namespace
+
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
-                         RecordingSink& sink, WorldObserver* observer) {
+                         RecordingSink& sink, WorldObserver* observer,
+                         const ShareDone& share_done) {
   if (!choice.problem.empty()) throw RecordingFailed(choice.problem);
   const std::unique_ptr<HostSync> host_sync = choice.host_sync.make();
   std::unique_ptr<CaptureAlignment> alignment;
   if (choice.is_steered()) {
     alignment = choice.capture_alignment.make();
   }
+  ProgramWatch watch(sink);
   RecordingCost cost = source.record({.seed = seed,
                                       .pipeline = choice.pipeline.name,
                                       .host_sync = host_sync.get(),
                                       .capture_alignment = alignment.get(),
-                                      .observer = observer},
-                                     sink);
+                                      .observer = observer,
+                                      .share_done = share_done},
+                                     choice.pipeline.programs ? watch : sink);
   std::ranges::move(host_sync->notes(), std::back_inserter(cost.notes));
+  // Where they ran in this process, and in a replayed recording, they are among the notes.
+  std::ranges::copy_if(failure_lines(watch.failures), std::back_inserter(cost.notes),
+                       [&cost](const std::string& line) {
+                         return std::ranges::find(cost.notes, line) == cost.notes.end();
+                       });
+  cost.program_failures = std::move(watch.failures);
   return cost;
 }
 
@@ -501,6 +529,7 @@ SeedScore captured_score(PipelineScorer& scorer, RecordingCost cost, std::uint64
   }
   std::ranges::move(score.cost.notes, std::back_inserter(cost.notes));
   score.cost = std::move(cost);
+  void_score(score);
   return score;
 }
 

@@ -102,9 +102,11 @@ ScorerSetup scorer_setup(const scenarios::Scenario& scenario, const PipelineChoi
 // Records one capture of the pipeline, with a host_sync of its own. `observer` may be null. Throws
 // RecordingFailed for a choice with a problem.
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
-                         RecordingSink& sink, WorldObserver* observer = nullptr);
+                         RecordingSink& sink, WorldObserver* observer = nullptr,
+                         const ShareDone& share_done = {});
 
-// The score of a capture that has gone to the scorer; call once.
+// The score of a capture that has gone to the scorer, which has no values if a program ended too
+// early in it (scoring/program_failures.h); call once.
 SeedScore captured_score(PipelineScorer& scorer, RecordingCost cost, std::uint64_t seed);
 
 // Records one and returns its score. `sink` passes the capture on to the scorer, or is the scorer.

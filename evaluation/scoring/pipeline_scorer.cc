@@ -92,6 +92,7 @@ class PipelineScorer::Capture {
   HostErrors host_errors_;
   bool pulses_have_truth_ = false;
   SyncFailures failures_;
+  std::vector<ProgramFailure> program_failures_;
   SessionScores sessions_;
   std::vector<std::unique_ptr<ScorePart>> parts_;
 };
@@ -221,6 +222,8 @@ void PipelineScorer::Capture::add(const RecordingEvent& event) {
     if (table_.holds(pulse->pulse)) host_errors_.add(pulse->host_errors);
   } else if (const auto* outcome = std::get_if<SyncOutcome>(&event)) {
     failures_.add(*outcome);
+  } else if (const auto* failure = std::get_if<ProgramFailure>(&event)) {
+    program_failures_.push_back(*failure);
   } else {
     sessions_.add(event);
     stamping_.on_event(event);
@@ -271,6 +274,7 @@ SeedScore PipelineScorer::Capture::finish() {
   for (const auto& part : parts_) part->add_to(score);
   score.failures = failures_.take();
   sessions_.add_to(score);
+  score.program_failures = std::move(program_failures_);
   return score;
 }
 

@@ -48,9 +48,11 @@ struct SeedScore : MetricValues<double> {
   SetCounts sets;
   // Frames whose place in GenLock order differs from their pulse; genlock only.
   std::int64_t genlock_index_errors = 0;
-  std::vector<PulseScore> pulses;         // with EvaluationOptions::keep_pulses
-  std::vector<double> host_errors_ms;     // signed mean over the evaluated pulses, per host
-  std::vector<SyncOutcome> failures;      // of host synchronisation, only those not synchronised
+  std::vector<PulseScore> pulses;      // with EvaluationOptions::keep_pulses
+  std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
+  std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
+  // Real programs that ended; where there is one the seed has no values (program_failures.h).
+  std::vector<ProgramFailure> program_failures{};
   std::vector<SessionDelays> sessions{};  // the last pass of each slave that reported one, by host
   RecordingCost cost;
 };
@@ -63,6 +65,11 @@ struct PublishedComparison {
   Percentile rmdv_percentile;
 };
 
+struct SeedProgramFailure {
+  std::uint64_t seed = 0;
+  ProgramFailure failure{};
+};
+
 // One pipeline over all seeds; metrics: evaluation/scoring/metrics.h.
 struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string pipeline;
@@ -70,7 +77,10 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string capture_alignment;  // empty: none
   std::string device_time;
   std::string gathering;
-  std::string model;     // of real programs: the pipeline that models them; empty: none
+  bool is_of_programs = false;  // its host_sync is real programs
+  std::string model;            // then: the pipeline that models them; empty: none
+  // In all seeds, in their order: the row has failed.
+  std::vector<SeedProgramFailure> program_failures{};
   bool offline = false;  // device_time needs the whole recording
   // The weakest of the seeds that were recorded; kNone if none was.
   GroundTruth ground_truth = GroundTruth::kSimulation;
@@ -135,6 +145,8 @@ struct Results {
   std::vector<Claim> claims;
   std::optional<AsymmetryFloor> asymmetry_floor;  // if the scenario's links are asymmetric
   std::vector<std::string> warnings;
+  // Pipelines of real programs that cannot run here and have no row; warnings say why.
+  std::vector<std::string> programs_left_out{};
   std::vector<std::string> loss_reasons{};  // why pulses are lost: scenarios::loss_reasons()
   std::vector<std::string> load_reality{};  // scenarios::load_reality()
   Performance performance;

@@ -120,6 +120,7 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   Row row;
   row.pipeline = pipeline.name;
   copy_stages(pipeline, row);
+  row.is_of_programs = pipeline.programs.has_value();
   if (pipeline.programs) row.model = pipeline.programs->model;
   add_shares(seeds);
   for (const Metric& metric : metrics(setting.kind)) {
@@ -129,6 +130,9 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
     row.emission_latency_max_ms =
         std::fmax(row.emission_latency_max_ms, seed.emission_latency_max_ms);
     row.unsynchronised_hosts += static_cast<std::int64_t>(seed.failures.size());
+    for (const ProgramFailure& failure : seed.program_failures) {
+      row.program_failures.push_back({.seed = seed.seed, .failure = failure});
+    }
   }
   row.ground_truth = weakest(seeds);
   row.notes = notes_of(seeds);

@@ -13,6 +13,7 @@
 #include "algorithms/ports/assert.h"
 #include "evaluation/statistics/statistics.h"
 #include "recording/number_in.h"
+#include "recording/program_failure.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -64,11 +65,15 @@ SweepScore sweep_score(const Row& row, ResultKind kind) {
                                                : metric->value(row));
   }
   score.host_errors_ms = row.seeds.front().host_errors_ms;
+  if (!row.program_failures.empty()) {
+    score.failed = failure_text(row.program_failures.front().failure);
+  }
   return score;
 }
 
 std::string text_of(const SweepScore& score) {
-  return fmt::format("{};{}", list_of(score.values), list_of(score.host_errors_ms));
+  return fmt::format("{};{}{}{}", list_of(score.values), list_of(score.host_errors_ms),
+                     score.failed.empty() ? "" : ";", score.failed);
 }
 
 std::optional<SweepScore> score_of(std::string_view text, ResultKind kind) {
@@ -78,7 +83,11 @@ std::optional<SweepScore> score_of(std::string_view text, ResultKind kind) {
   SweepScore score(kind);
   if (!cells || cells->size() != score.values.size()) return std::nullopt;
   score.values = *cells;
-  const std::string_view hosts = text.substr(semicolon + 1);
+  std::string_view hosts = text.substr(semicolon + 1);
+  if (const std::size_t end = hosts.find(';'); end != std::string_view::npos) {
+    score.failed = hosts.substr(end + 1);
+    hosts = hosts.substr(0, end);
+  }
   if (hosts.empty()) return score;
   const auto errors = numbers_of(hosts);
   if (!errors) return std::nullopt;
@@ -148,6 +157,10 @@ std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<Sweep
     for (std::size_t i = 0; i < columns; ++i) row.series.push_back(score_series(seeds, i));
     if (plan.kind == ResultKind::kCaptures) row.pooled = pooled_values(seeds, row);
     row.hosts = host_series(seeds);
+    for (const SweepScore& seed : seeds) {
+      if (seed.failed.empty()) continue;
+      if (row.failed_seeds++ == 0) row.failed = seed.failed;
+    }
     rows.push_back(std::move(row));
   }
   return rows;

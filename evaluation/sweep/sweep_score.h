@@ -2,8 +2,9 @@
 // point.
 //
 // The text is for the log of finished runs and for other machines: the cells of the run's line in
-// sweep.csv, a semicolon, and the mean clock error of every host. Numbers are the shortest that
-// read back as the same double, so the text loses nothing.
+// sweep.csv, a semicolon, and the mean clock error of every host; of a run in which a real program
+// ended too early, which has no values, another semicolon and the failure in words. Numbers are the
+// shortest that read back as the same double, so the text loses nothing.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,8 @@ struct SweepScore {
   ResultKind kind = ResultKind::kCaptures;
   std::vector<double> values;            // by sweep_metrics(kind) (evaluation/scoring/metrics.h)
   std::vector<double> host_errors_ms{};  // signed mean, by host
+  std::string
+      failed{};  // "host 3, at 0.250000 s: chronyd: exited with status 1"; empty: it did not
 
   // Zero in every column.
   SweepScore() : SweepScore(ResultKind::kCaptures) {}
@@ -47,6 +50,9 @@ struct ResponseRow {
   // What captures have over all seeds; margin_ms is the median of the seeds'.
   PooledValues pooled{};
   std::vector<Series> hosts{};  // |mean clock error| of each host; the master's is first
+  // In how many seeds a real program ended too early, and the first failure in words.
+  std::size_t failed_seeds = 0;
+  std::string failed{};
 
   // The series of a column, which must exist: of("amd_ms").median.
   const Series& of(std::string_view column) const;

@@ -31,9 +31,13 @@ RankedBy ranking_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows)
 
 std::vector<ResponseRow> without_failed(std::vector<ResponseRow> rows, RankedBy ranked_by) {
   const Metric& metric = ranked_metric(ranked_by);
+  const auto has_failed = [ranked_by](const ResponseRow& row) {
+    if (!row.failed.empty()) return true;
+    return row.kind == ResultKind::kCaptures &&
+           !failure_text(response_outcome(row), ranked_by).empty();
+  };
   for (ResponseRow& row : rows) {
-    if (row.kind != ResultKind::kCaptures) continue;
-    if (failure_text(response_outcome(row), ranked_by).empty()) continue;
+    if (!has_failed(row)) continue;
     Series& series = row.at(metric.sweep);
     series = make_series(std::vector<double>(series.values.size(), kNan));
   }

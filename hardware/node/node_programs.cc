@@ -17,8 +17,8 @@
 #include "processes/child.h"
 #include "processes/lesser_user.h"
 #include "processes/placeholders.h"
+#include "processes/program_endings.h"
 #include "processes/requests.h"
-#include "recording/text_fields.h"
 
 namespace simbench::hardware {
 namespace {
@@ -28,8 +28,8 @@ using processes::Child;
 using scenarios::HostPrograms;
 
 // Answers one program until it ends; returns how it did.
-Task<std::string> serve(Child& child, ProgramClock& clock) {
-  if (child.link() < 0) co_return printable_name(child.ending());
+Task<processes::ProgramEnd> serve(Child& child, ProgramClock& clock) {
+  if (child.link() < 0) co_return child.end_of();
   // The descriptor closes the number that it has.
   asio::posix::stream_descriptor link(co_await asio::this_coro::executor, dup(child.link()));
   std::string reason;
@@ -44,7 +44,7 @@ Task<std::string> serve(Child& child, ProgramClock& clock) {
       reason = bad.what();
     }
   }
-  co_return printable_name(child.ending(reason));
+  co_return child.end_of(reason);
 }
 
 SoftwareClock& software_clock(Host& host) {
@@ -55,8 +55,8 @@ SoftwareClock& software_clock(Host& host) {
 
 class RunningNodePrograms {
  public:
-  RunningNodePrograms(const asio::any_io_executor& executor, Host& host)
-      : host_(host), clock_(executor, software_clock(host)), time_is_up_(executor) {}
+  RunningNodePrograms(const asio::any_io_executor& executor, Host& host, std::size_t programs)
+      : clock_(executor, software_clock(host)), time_is_up_(executor), endings_(host, programs) {}
 
   void start(Child::Settings child) {
     child.log_name = fmt::format("{}_{}.log", children_.size(), child.log_name);
@@ -67,6 +67,7 @@ class RunningNodePrograms {
 
   // Until it is cancelled.
   Task<void> run(std::optional<Nanoseconds> duration) {
+    begin_ = monotonic_now();
     std::vector<Task<void>> tasks;
     tasks.push_back(clock_.run());
     for (Child& child : children_) tasks.push_back(watch(child));
@@ -76,12 +77,9 @@ class RunningNodePrograms {
 
  private:
   Task<void> watch(Child& child) {
-    const std::string ending = co_await serve(child, clock_);
-    if (std::exchange(has_ended_, true)) co_return;
-    host_.report_outcome({.slave = host_.id(),
-                          .synchronised = false,
-                          .passes = 0,
-                          .message = fmt::format("host {}: {}", host_.id(), ending)});
+    processes::ProgramEnd end = co_await serve(child, clock_);
+    if (has_ended_) co_return;
+    endings_.add(std::move(end), {.at = monotonic_now() - begin_}, clock_.was_steered());
   }
 
   Task<void> stop_after(Nanoseconds duration) {
@@ -91,11 +89,12 @@ class RunningNodePrograms {
     for (Child& child : children_) child.ending();
   }
 
-  Host& host_;
   ProgramClock clock_;
   asio::steady_timer time_is_up_;
   std::deque<Child> children_;
-  bool has_ended_ = false;
+  processes::ProgramEndings endings_;
+  MonotonicTime begin_{};
+  bool has_ended_ = false;  // the time is up: what ends now is ended
 };
 
 }  // namespace
@@ -118,7 +117,7 @@ std::string NodePrograms::make_folder(PeerId host) const {
 }
 
 Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> commands) {
-  RunningNodePrograms programs(co_await asio::this_coro::executor, host);
+  RunningNodePrograms programs(co_await asio::this_coro::executor, host, commands.size());
   const std::string folder = make_folder(host.id());
   const processes::HostPlaces places{
       .host = host.id(), .interface = settings_.interface.c_str(), .files = folder};

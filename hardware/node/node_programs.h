@@ -5,8 +5,8 @@
 // the network of the namespace in which the node runs. They are confined (processes/confinement.h):
 // they set no clock of the machine. The node's namespace should reach nothing but the experiment.
 //
-// The first program that ends is the host's failure, which the log has with its last words.
-// Cancelling ends the programs.
+// A program that ends by itself may be the host's failure, or have done its work
+// (processes/program_endings.h). Cancelling ends the programs.
 //
 // Errors: std::runtime_error on a host whose clock is not in software, and for a folder that cannot
 // be made. A program that cannot be started has ended.

@@ -48,6 +48,8 @@ class ProgramClock {
   Answer answer(const processes::ChildRequest& request);
   // The kernel's own work, for ever: without it nothing is added to the phase.
   Task<void> run();
+  // Whether a program has set or steered the clock.
+  bool was_steered() const { return kernel_.was_steered(); }
 
  private:
   Answer set(std::int64_t clock, std::int64_t reading);

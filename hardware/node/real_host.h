@@ -51,6 +51,7 @@ class RealHost final : public Host {
   double random_uniform() override;
   void report_exchange(const Exchange& exchange) override { sink_(ExchangeEvent{id_, exchange}); }
   void report_outcome(const SyncOutcome& outcome) override { sink_(outcome); }
+  void report_program_failure(const ProgramFailure& failure) override { sink_(failure); }
   void report_delays(const SessionDelays& delays) override { sink_(delays); }
   void report_alignment(const AlignmentReport& report) override { sink_(report); }
   std::span<FrameControl* const> frame_controls() override { return controls_; }

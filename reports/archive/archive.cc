@@ -225,6 +225,7 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
   }
   row.published = published(node["published"]);
   read_ground_truth(node, row);
+  read_programs(node, row);
   return row;
 }
 
@@ -238,6 +239,8 @@ Row read_clock_row(const JsonNode& node, std::size_t seeds) {
   if (node.has("unsynchronised_hosts")) {
     row.unsynchronised_hosts = node["unsynchronised_hosts"].count();
   }
+  if (node.has("notes")) row.notes = read_lines(node["notes"]);
+  read_programs(node, row);
   return row;
 }
 

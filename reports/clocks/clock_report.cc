@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/answer/standing.h"
 #include "evaluation/clock_run/clock_score.h"
 #include "recording/version.h"
 #include "reports/results/answer_fields.h"
@@ -60,12 +61,24 @@ Field<Row> clock_field(const Metric& metric) {
   return field;
 }
 
+evaluation::ReasonedStanding standing_among_clocks(const Row& row) {
+  return evaluation::standing_of(row, evaluation::RankedBy::kClockSpread);
+}
+
+bool has_failed(const Row* row) {
+  return standing_among_clocks(*row).is == evaluation::RowStanding::kFailed;
+}
+
 Table metrics_table(const ClockResults& results) {
+  const std::vector<const Row*> rows = pointers_to(results.results.rows);
   std::vector<Field<Row>> fields = {pipeline_field<Row>()};
+  if (std::ranges::any_of(rows, has_failed)) {
+    fields.push_back(standing_field(rows, evaluation::RankedBy::kClockSpread));
+  }
   for (const Metric* metric : table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
     fields.push_back(clock_field(*metric));
   }
-  return table_of(fields, results.results.rows);
+  return table_of(fields, rows);
 }
 
 // A line for each tau, a column for each pipeline.
@@ -140,6 +153,7 @@ Document clock_document(const ClockResults& results, const std::string& summary)
                     .head = paragraphs(clock_answer(results))};
   const std::vector<std::string> head = results_head(results.results, summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
+  if (!results.period_note.empty()) document.head.push_back(results.period_note);
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
   if (!results.follows.empty() && !results.hosts.empty()) {
@@ -189,6 +203,12 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
   if (!row.model.empty()) all["model"] = row.model;
   all["notes"] = row.notes;
   all["unsynchronised_hosts"] = row.unsynchronised_hosts;
+  if (row.is_of_programs || has_failed(&row)) {
+    const evaluation::ReasonedStanding standing = standing_among_clocks(row);
+    all["standing"] = evaluation::standing_id(standing.is);
+    all["failed"] = standing.reason.empty() ? Json() : Json(standing.reason);
+  }
+  state_programs(row, all);
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves())
     all[curve.id] = points_json(curves.*curve.points);
   all["max_te_ms"] = largest(row.max_te_ms.values);
@@ -238,9 +258,11 @@ std::string clock_json(const ClockResults& results) {
                {"duration_s", of.clock_period.duration_s},
                {"from_s", of.clock_period.from_s},
                {"interval_s", to_seconds(evaluation::kReadingInterval)},
+               {"period_note", results.period_note},
                {"rows", Json::array()},
                {"warnings", of.warnings},
                {kLoadRealityMember, of.load_reality}});
+  if (results.period_note.empty()) root.erase("period_note");
   for (std::size_t row = 0; row < of.rows.size(); ++row) {
     root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
     if (results.hosts.empty()) continue;  // of an archive, which does not keep them
@@ -270,6 +292,10 @@ std::string clock_csv(const ClockResults& results) {
                             csv_cell(point.value), ends.line);
       }
     }
+    if (!has_failed(&row)) continue;
+    const evaluation::ReasonedStanding standing = standing_among_clocks(row);
+    text += fmt::format("{},standing,,{}{}", name, evaluation::standing_id(standing.is), ends.line);
+    text += fmt::format("{},failed,,{}{}", name, csv_cell(standing.reason), ends.line);
   }
   return text;
 }

@@ -5,6 +5,7 @@
 //   {"schema_version": 1, "kind": "clocks", "version", "commit", "scenario",
 //    "based_on", "changed", "published_left_out" (reports/results/json.h),
 //    "seeds": {"first", "count"}, "duration_s", "from_s", "interval_s": of the readings,
+//    "period_note": where somebody chose the duration or left out the loss of the master,
 //    "rows": [{"pipeline", "host_sync", "device_time", "gathering",
 //              "clock_spread_ms": {"mean", "median", "p95", "max": in time, of that the mean over
 //              the
@@ -12,6 +13,8 @@
 //              "adev", "mdev", "hdev": [{"tau_s", "value", "terms"}], RMS over slaves and seeds,
 //              "tdev_ms" likewise, "mtie_ms": the largest of any slave and seed,
 //              "unsynchronised_hosts": over all seeds,
+//              "standing", "failed": as of a run, of rows that failed and of those of real programs
+//                alone, which also have "program_failures" (reports/results/json.h),
 //              "max_te_ms": the largest of all seeds, "rms_te_ms": over all,
 //              "constant_te_ms", "dynamic_te_ms": the largest of all seeds,
 //              "below_ms": {"1", "0.1", "0.01"}: seconds until the spread stays below, the median
@@ -65,7 +68,7 @@ Document clock_document(const evaluation::ClockResults& results, const std::stri
 std::string clock_json(const evaluation::ClockResults& results);
 
 // pipeline,measure,tau_s,value: the metrics without a tau (medians over the seeds), then the
-// curves.
+// curves; of a row that failed also the measures `standing` and `failed`, whose values are words.
 std::string clock_csv(const evaluation::ClockResults& results);
 
 // pipeline,seed,time_s,host,te_s: the time errors of the first seed's slaves.

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "evaluation/scoring/program_failures.h"
 #include "recording/collected.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/ground_truth_text.h"
@@ -34,6 +36,27 @@ struct RowPair {
   const Row* b = nullptr;
 };
 
+// What seeds of a row have in which no program ended is no value of it: it has failed.
+std::vector<double> compared_values(const evaluation::Metric& metric, const Row& row) {
+  std::vector<double> values = metric.series(row).values;
+  if (!row.program_failures.empty()) std::ranges::fill(values, evaluation::kNan);
+  return values;
+}
+
+// Says which rows are not compared, each once.
+void note_failed(const std::vector<RowPair>& rows, Comparison& comparison) {
+  for (const RowPair& pair : rows) {
+    for (const Row* row : {pair.a, pair.b}) {
+      const std::string failure = evaluation::program_failure_text(*row);
+      if (failure.empty()) continue;
+      std::string note =
+          fmt::format("{} failed, so nothing of it is compared: {}", row->pipeline, failure);
+      if (std::ranges::find(comparison.notes, note) != comparison.notes.end()) continue;
+      comparison.notes.push_back(std::move(note));
+    }
+  }
+}
+
 // Judges every metric of every pair, all together.
 void compare(const std::vector<RowPair>& rows, const SeedPairing& pairing,
              const ComparisonOptions& options, evaluation::ResultKind kind,
@@ -46,13 +69,15 @@ void compare(const std::vector<RowPair>& rows, const SeedPairing& pairing,
   tasks.reserve(rows.size() * judged.size());
   for (const RowPair& row : rows) {
     for (const evaluation::Metric* metric : judged) {
-      tasks.push_back({.values = evaluation::pair_up(pairing.of_a(metric->series(*row.a).values),
-                                                     pairing.of_b(metric->series(*row.b).values)),
-                       .rule = {.smallest_effect = options.smallest_effect,
-                                .smallest_step = metric->judged->smallest_step,
-                                .higher_is_better = metric->higher_is_better()}});
+      tasks.push_back(
+          {.values = evaluation::pair_up(pairing.of_a(compared_values(*metric, *row.a)),
+                                         pairing.of_b(compared_values(*metric, *row.b))),
+           .rule = {.smallest_effect = options.smallest_effect,
+                    .smallest_step = metric->judged->smallest_step,
+                    .higher_is_better = metric->higher_is_better()}});
     }
   }
+  note_failed(rows, comparison);
   const std::vector<evaluation::PairedComparison> all = evaluation::compare_together(tasks);
   comparison.judged = judged;
   comparison.pipelines.reserve(rows.size());
@@ -214,8 +239,8 @@ Comparison compare_archives(const Archive& a, const Archive& b, const Comparison
                                  fmt::join(names_of(a), ", "), b.path,
                                  fmt::join(names_of(b), ", ")));
   }
-  compare(rows, pairing, options, a.results.kind, comparison);
   comparison.notes = std::move(notes);
+  compare(rows, pairing, options, a.results.kind, comparison);
   return comparison;
 }
 

@@ -9,6 +9,9 @@
 // of one archive share all of a seed but these, and so do archives of scenarios with other names:
 // the notes say so. Archives of one scenario share the loads, too.
 //
+// A row of programs that ended too early has failed: it has no values in a comparison, and the
+// notes say why.
+//
 // All verdicts of one comparison, pipelines times metrics, are corrected for their number together.
 //
 // Errors: scenarios::InputError, which states the difference and what can be compared instead:

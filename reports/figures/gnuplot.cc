@@ -519,6 +519,7 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
 }
 
 std::string drawn_svg(const Figure& figure) {
+  const HeldInterrupt held;  // until the folder is gone
   const TemporaryFolder folder;
   const std::string picture = folder.file(figure.id + ".svg");
   draw(figure, PlotFormat::kSvg, picture);

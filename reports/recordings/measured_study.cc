@@ -20,10 +20,11 @@ constexpr int kSchemaVersion = 1;
 constexpr const char* kStudyAdvice =
     "`simbench validate-model` explains how to measure and keep one";
 
+// A row of programs that ended has failed, whatever the other repetitions have.
 MeasuredPipeline measured_pipeline(const Row& row) {
   MeasuredPipeline pipeline{.pipeline = row.pipeline, .seeds = {}, .notes = row.notes};
   for (const evaluation::SeedScore& score : row.seeds) {
-    if (!score.recorded) continue;
+    if (!score.recorded || !row.program_failures.empty()) continue;
     MeasuredSeed& seed = pipeline.seeds.emplace_back();
     seed.seed = score.seed;
     for (const char* id : evaluation::kGapMetrics) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "evaluation/model/evidence.h"
+#include "evaluation/scoring/program_failures.h"
 #include "recording/version.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -115,11 +116,12 @@ std::string summary_line(const std::vector<ModelGapRow>& rows) {
       within, judged, differ, rows.size());
 }
 
-std::vector<std::string> notes_of(const MeasuredStudy& study) {
+std::vector<std::string> notes_of(const ModelGapReport& report) {
   std::vector<std::string> notes;
-  for (const MeasuredPipeline& row : study.rows) {
+  for (const MeasuredPipeline& row : report.measured.rows) {
     for (const std::string& note : row.notes) notes.push_back(row.pipeline + ", " + note);
   }
+  notes.insert(notes.end(), report.simulated_failures.begin(), report.simulated_failures.end());
   return notes;
 }
 
@@ -158,9 +160,19 @@ Json evidence_json() {
 
 ModelGapReport model_gap_report(const MeasuredStudy& measured,
                                 const evaluation::Results& simulated) {
-  return {.measured = measured,
-          .simulated_seeds = simulated.seed_count,
-          .rows = evaluation::model_gap(results_of(measured), simulated)};
+  ModelGapReport report{.measured = measured, .simulated_seeds = simulated.seed_count};
+  evaluation::Results without_failed = simulated;
+  for (evaluation::Row& row : without_failed.rows) {
+    const std::string failure = evaluation::program_failure_text(row);
+    if (failure.empty()) continue;
+    report.simulated_failures.push_back(fmt::format("{}, simulated: {}", row.pipeline, failure));
+    for (const char* id : evaluation::kGapMetrics) {
+      evaluation::Series& series = evaluation::metric(id).series(row);
+      series = evaluation::make_series(std::vector<double>(series.values.size(), evaluation::kNan));
+    }
+  }
+  report.rows = evaluation::model_gap(results_of(measured), without_failed);
+  return report;
 }
 
 Document model_gap_document(const ModelGapReport& report) {
@@ -173,7 +185,7 @@ Document model_gap_document(const ModelGapReport& report) {
   document.blocks.push_back({.heading = "The gap",
                              .table = gap_table(report.rows),
                              .prose = {summary_line(report.rows)}});
-  if (const std::vector<std::string> notes = notes_of(measured); !notes.empty()) {
+  if (const std::vector<std::string> notes = notes_of(report); !notes.empty()) {
     document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
   }
   document.blocks.push_back(
@@ -193,7 +205,7 @@ std::string model_gap_json(const ModelGapReport& report) {
        {{"date", measured.date}, {"machine", measured.machine}, {"commit", measured.commit}}},
       {"simulated_seeds", report.simulated_seeds},
       {"rows", Json::array()},
-      {"notes", notes_of(measured)},
+      {"notes", notes_of(report)},
       {"evidence", evidence_json()}};
   for (const ModelGapRow& row : report.rows) root["rows"].push_back(gap_row_json(row));
   return file_text(root);

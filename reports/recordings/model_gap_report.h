@@ -27,7 +27,9 @@ namespace simbench::reports {
 struct ModelGapReport {
   MeasuredStudy measured;
   std::uint64_t simulated_seeds = 0;
-  std::vector<evaluation::ModelGapRow> rows;
+  std::vector<evaluation::ModelGapRow> rows{};
+  // Rows whose programs ended too early in the simulation, which have no values there.
+  std::vector<std::string> simulated_failures{};
 };
 
 // `simulated` is of the same scenario and pipelines.

@@ -124,6 +124,12 @@ Json error_json(const Budget& budget, const ErrorParts& error) {
           {"stages", std::move(stages)}};
 }
 
+Json failed_json(const Budget& budget) {
+  return {{"pipeline", budget.pipeline}, {"failed", budget.failed},      {"amd_of_sets", nullptr},
+          {"amd_ms", nullptr},           {"absolute_error_ms", nullptr}, {"physical_ms", nullptr},
+          {"host_error_ms", nullptr}};
+}
+
 Json host_clock_json(const HostClockBudget& budget) {
   if (!budget.is_divided) return {{"note", budget.note}};
   Json parts = Json::array();
@@ -145,6 +151,12 @@ Document budget_document(const BudgetReport& report) {
   Document document{.head = scenarios::derivation_lines(report.derivation)};
   for (const PipelineBudget& budget : report.budgets) {
     const Budget& stages = budget.stages;
+    if (!stages.failed.empty()) {
+      document.blocks.push_back(
+          {.heading = budget_heading("Error budget", report, stages.pipeline),
+           .prose = {fmt::format("{} failed: {}.", stages.pipeline, stages.failed)}});
+      continue;
+    }
     document.blocks.push_back({.heading = budget_heading("Error budget", report, stages.pipeline),
                                .table = budget_table(stages),
                                .prose = {budget_legend(stages)}});
@@ -160,6 +172,10 @@ std::string budget_json(const BudgetReport& report) {
   root["seeds"] = {{"first", report.first_seed}, {"count", report.seeds}};
   root["budgets"] = Json::array();
   for (const auto& [stages, host_clock] : report.budgets) {
+    if (!stages.failed.empty()) {
+      root["budgets"].push_back(failed_json(stages));
+      continue;
+    }
     root["budgets"].push_back({{"pipeline", stages.pipeline},
                                {"amd_of_sets", stages.amd_of_sets},
                                {"amd_ms", error_json(stages, stages.amd_ms)},

@@ -67,6 +67,7 @@ Json row_json(const evaluation::Row& row, evaluation::RankedBy ranked_by) {
   const evaluation::ReasonedStanding standing = evaluation::standing_of(row, ranked_by);
   all["standing"] = evaluation::standing_id(standing.is);
   all["failed"] = standing.reason.empty() ? Json() : Json(standing.reason);
+  state_programs(row, all);
   all["published"] = published_json(row.published);
   return all;
 }
@@ -207,6 +208,44 @@ Derivation read_derivation(const JsonNode& root) {
   const JsonNode unpublished = root["published_left_out"];
   if (!unpublished.is_null()) derivation.unpublished = unpublished.text();
   return derivation;
+}
+
+namespace {
+
+constexpr const char* kProgramFailures = "program_failures";
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+std::string text_of(const JsonNode& node) { return node.is_null() ? "" : node.text(); }
+
+}  // namespace
+
+void state_programs(const evaluation::Row& row, Json& to) {
+  if (!row.is_of_programs) return;
+  Json& all = to[kProgramFailures] = Json::array();
+  for (const auto& [seed, failure] : row.program_failures) {
+    all.push_back({{"seed", seed},
+                   {"host", failure.host},
+                   {"program", failure.program},
+                   {"at_s", to_ns(failure.at) / 1e9},
+                   {"how", failure.how},
+                   {"last_words", text_or_null(failure.last_words)},
+                   {"log", text_or_null(failure.log)}});
+  }
+}
+
+void read_programs(const JsonNode& from, evaluation::Row& row) {
+  if (!from.has(kProgramFailures)) return;
+  row.is_of_programs = true;
+  for (const JsonNode& node : from[kProgramFailures].elements()) {
+    row.program_failures.push_back({.seed = static_cast<std::uint64_t>(node["seed"].count()),
+                                    .failure = {.host = static_cast<PeerId>(node["host"].count()),
+                                                .program = node["program"].text(),
+                                                .at = from_ms(1e3 * node["at_s"].number()),
+                                                .how = node["how"].text(),
+                                                .last_words = text_of(node["last_words"]),
+                                                .log = text_of(node["log"])}});
+  }
 }
 
 void state_published_figures(const evaluation::Results& results, Json& root) {

@@ -24,7 +24,8 @@
 //                known which frames belong together (else "evaluated_pulses" counts sets; what
 //                needs pulses is null), "notes": [failures, "repetition 3: ..."],
 //              "standing": "ranked", "failed", "limit" or "reference"
-//              (evaluation/answer/standing.h), "failed": null, or why, "published": null or
+//              (evaluation/answer/standing.h), "failed": null, or why, "program_failures": see
+//              state_programs(), "published": null or
 //              {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside" (null: too
 //                few seeds to tell),
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
@@ -75,6 +76,14 @@ std::string json(const evaluation::Results& results, const ResultsAnswer& answer
 void state_derivation(const scenarios::Derivation& derivation, Json& root);
 // Throws scenarios::InputError. A document without the members has none.
 scenarios::Derivation read_derivation(const JsonNode& root);
+
+// Rows of real programs, in clock runs too, have the member "program_failures": a list, empty if
+// none ended too early, of {"seed", "host", "program", "at_s": since the run began, "how",
+// "last_words": null or the last line of its output, "log": null or the file that has it}. A seed
+// in it has null in all values.
+void state_programs(const evaluation::Row& row, Json& to);
+// Throws scenarios::InputError. Other rows lack the member.
+void read_programs(const JsonNode& from, evaluation::Row& row);
 
 // Published figures and their comparison: an array "published_figures", which results without
 // figures lack. An entry has what the scenario states, the percentile of the number among the

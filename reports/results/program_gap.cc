@@ -52,6 +52,11 @@ std::optional<Block> program_gap_block(const Results& results) {
     if (model == nullptr) continue;
     std::vector<std::string> cells = {row.pipeline, model->pipeline};
     for (const Compared& each : compared) {
+      if (!row.program_failures.empty()) {  // it has failed: what other seeds have is no comparison
+        cells.insert(cells.end(),
+                     {"-", metric_text(*each.metric, each.metric->series(*model).median), "-"});
+        continue;
+      }
       cells.push_back(metric_text(*each.metric, each.metric->series(row).median));
       cells.push_back(metric_text(*each.metric, each.metric->series(*model).median));
       cells.push_back(ratio_text(*each.metric, row, *model));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "evaluation/answer/answer.h"
 #include "evaluation/scoring/rows.h"
 #include "recording/counted.h"
 #include "reports/results/ground_truth_text.h"
@@ -238,14 +239,37 @@ std::string unsynchronised_line(const Row& row) {
   return line;
 }
 
+// Where to read more of the first program that ended; "" if none did.
+std::string program_log_text(const Results& results) {
+  for (const Row& row : results.rows) {
+    if (row.program_failures.empty()) continue;
+    const std::string& log = row.program_failures.front().failure.log;
+    return log.empty() ? "--program-log DIR keeps what programs print, and their files."
+                       : fmt::format("What the program of {} printed: {}", row.pipeline, log);
+  }
+  return "";
+}
+
 }  // namespace
 
 std::optional<Block> failures_block(const Results& results) {
   Block block;
   for (const Row& row : results.rows) {
-    if (row.unsynchronised_hosts > 0) block.prose.push_back(unsynchronised_line(row));
+    // What ended programs say is among the notes.
+    const auto said = static_cast<std::int64_t>(row.program_failures.size());
+    if (row.unsynchronised_hosts > said) block.prose.push_back(unsynchronised_line(row));
   }
   return block.prose.empty() ? std::nullopt : std::optional(std::move(block));
+}
+
+Field<Row> standing_field(const std::vector<const Row*>& rows, evaluation::RankedBy ranked_by) {
+  const Row* const best = evaluation::best_of(rows, ranked_by);
+  return {{.header = "is", .align = Align::kLeft, .is_verdict = true},
+          [best, ranked_by](const Row& row) {
+            return &row == best
+                       ? "best"
+                       : evaluation::standing_name(evaluation::standing_of(row, ranked_by).is);
+          }};
 }
 
 std::optional<Block> notes_block(const Results& results, std::size_t most) {
@@ -256,6 +280,7 @@ std::optional<Block> notes_block(const Results& results, std::size_t most) {
     notes.resize(most);
     notes.push_back(rest);
   }
+  if (std::string log = program_log_text(results); !log.empty()) notes.push_back(std::move(log));
   return Block{.heading = "What went wrong", .items = std::move(notes), .is_warning = true};
 }
 

@@ -37,6 +37,10 @@ std::vector<std::string> results_head(const evaluation::Results& results,
 // The columns of a metric in a table of rows: its value and, if it has a heading, its band.
 std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
 
+// What each row is among these: the best, failed, a limit, a reference.
+Field<evaluation::Row> standing_field(const std::vector<const evaluation::Row*>& rows,
+                                      evaluation::RankedBy ranked_by);
+
 // The column of the seeds behind a row's medians of these metrics, "14 of 16", if a row has fewer
 // than all; "12-14 of 16" where the metrics differ. A metric without any value does not count.
 std::vector<Field<evaluation::Row>> scored_seeds_field(
@@ -80,9 +84,10 @@ std::optional<Block> published_figures_lines(const evaluation::Results& results)
 std::optional<Block> program_gap_block(const evaluation::Results& results);
 
 // A line for each pipeline whose host synchronisation failed, with the first reason; nothing if
-// none did.
+// none did. Rows of programs that ended have their lines among the notes.
 std::optional<Block> failures_block(const evaluation::Results& results);
-// The notes of all rows, the first `most` of them; nothing if there are none.
+// The notes of all rows, the first `most` of them; nothing if there are none. If a program ended,
+// they end with where its output is, or what keeps it.
 std::optional<Block> notes_block(const evaluation::Results& results,
                                  std::size_t most = std::numeric_limits<std::size_t>::max());
 

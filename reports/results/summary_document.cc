@@ -60,17 +60,6 @@ void add_published_amd(const Results& results, RowFields& fields) {
        }});
 }
 
-// What a row is among those of its table: the best, failed, a limit, a reference.
-Field<Row> standing_field(const std::vector<const Row*>& rows, RankedBy ranked_by) {
-  const Row* const best = evaluation::best_of(rows, ranked_by);
-  return {{.header = "is", .align = Align::kLeft, .is_verdict = true},
-          [best, ranked_by](const Row& row) {
-            return &row == best
-                       ? "best"
-                       : evaluation::standing_name(evaluation::standing_of(row, ranked_by).is);
-          }};
-}
-
 RowFields summary_fields(const Results& results, const std::vector<const Row*>& rows,
                          RankedBy ranked_by) {
   RowFields fields = {pipeline_field<Row>(), standing_field(rows, ranked_by)};

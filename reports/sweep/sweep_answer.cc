@@ -225,6 +225,32 @@ std::string flips_text(const SweepPlan& plan, const Ranking& ranking) {
   return text;
 }
 
+// The pipelines of programs that ended, with their first failure.
+std::string failures_text(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  struct Failure {
+    std::size_t pipeline;
+    const ResponseRow* first;
+    std::size_t points = 0;
+  };
+  std::vector<Failure> failures;
+  for (const ResponseRow& row : rows) {
+    if (row.failed.empty()) continue;
+    auto known = std::ranges::find(failures, row.pipeline, &Failure::pipeline);
+    if (known == failures.end()) {
+      known = failures.insert(known, {.pipeline = row.pipeline, .first = &row});
+    }
+    ++known->points;
+  }
+  std::vector<std::string> sentences;
+  for (const Failure& each : failures) {
+    sentences.push_back(fmt::format("{} failed at {} of {}: a program ended; at {}: {}.",
+                                    plan.pipelines[each.pipeline], each.points,
+                                    counted(plan.points(), "point"),
+                                    leading_text(plan, each.first->point), each.first->failed));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
 }  // namespace
 
 AnswerText sweep_answer(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
@@ -235,10 +261,13 @@ AnswerText sweep_answer(const SweepPlan& plan, const std::vector<ResponseRow>& r
   const Ranking ranking = evaluation::rank(part.plan, part.rows, metric);
   const Winner winner(part, metric, most_often_first(ranking, part.plan.pipelines.size()));
   if (!winner.exists()) {
-    return {.lead =
-                fmt::format("No pipeline that a rig can run has a value of the {}.", metric.title)};
+    AnswerText none{
+        .lead = fmt::format("No pipeline that a rig can run has a value of the {}.", metric.title)};
+    none.add("Failed", failures_text(plan, rows));
+    return none;
   }
   AnswerText answer{.lead = winner.lead(ranking)};
+  answer.add("Failed", failures_text(plan, rows));
   answer.add("Range", winner.range());
   answer.add("Order", flips_text(part.plan, ranking));
   answer.add("Effect", winner.what_matters());

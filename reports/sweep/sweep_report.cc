@@ -217,11 +217,15 @@ std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scor
   for (const evaluation::Metric* metric : evaluation::sweep_metrics(plan.kind)) {
     csv.append(",").append(metric->sweep);
   }
+  const bool has_failures =
+      std::ranges::any_of(scores, [](const SweepScore& score) { return !score.failed.empty(); });
+  if (has_failures) csv += ",failed";
   const LineEnds ends(plan.derivation);
   csv += ends.header;
   for (std::size_t index = 0; index < scores.size(); ++index) {
     csv += run_cells(plan, plan.run(index));
     for (const double value : scores[index].values) csv.append(",").append(csv_cell(value));
+    if (has_failures) csv.append(",").append(csv_cell(scores[index].failed));
     csv += ends.line;
   }
   return csv;

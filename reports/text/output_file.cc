@@ -29,10 +29,10 @@ constexpr const char* kAside = ".old";
 
 thread_local int held_interrupts = 0;
 void change_interrupt_mask(int how) {
-  sigset_t interrupt;
-  sigemptyset(&interrupt);
-  sigaddset(&interrupt, SIGINT);
-  pthread_sigmask(how, &interrupt, nullptr);
+  sigset_t interruptions;
+  sigemptyset(&interruptions);
+  for (const int number : {SIGINT, SIGTERM}) sigaddset(&interruptions, number);
+  pthread_sigmask(how, &interruptions, nullptr);
 }
 
 [[noreturn]] void fail(const std::string& named, const std::string& problem) {

@@ -2,8 +2,8 @@
 //
 // They are written under a temporary name beside their own; publish() renames. Without publish()
 // nothing is left, and an earlier result in that place stays; what a killed process has left is
-// removed by the next one that writes there. Ctrl-C leaves nothing: while one of them is not
-// published, SIGINT waits on its thread, unless the program handles it (app/interrupt.h), and a
+// removed by the next one that writes there. Ctrl-C and SIGTERM leave nothing: while one of them is
+// not published, they wait on its thread, unless the program handles them (app/interrupt.h), and a
 // program that ends in haste disposes of it (recording/disposable.h). A link stays one: its target
 // is replaced. An OutputFolder replaces only an earlier result of simbench: it refuses a folder
 // with anything else in it.
@@ -37,7 +37,7 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// SIGINT waits for the end of all of these of a thread.
+// SIGINT and SIGTERM wait for the end of all of these of a thread.
 class HeldInterrupt {
  public:
   HeldInterrupt();

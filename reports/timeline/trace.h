@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
 #include "recording/recording.h"
 #include "recording/world_observer.h"
@@ -98,6 +99,9 @@ struct Trace {
   std::vector<TraceAdjustment> adjustments;
   std::vector<TraceSession> sessions;
   std::vector<TraceSet> sets;
+
+  // Real programs that ended too early: what clocks do from then on is not their work.
+  std::vector<ProgramFailure> program_failures{};
 
   TraceOptions options;
   TraceLeftOut left_out;

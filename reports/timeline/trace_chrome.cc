@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/program_failure.h"
 #include "recording/version.h"
 #include "reports/results/json.h"
 #include "reports/text/json_node.h"
@@ -181,6 +182,9 @@ class ChromeWriter {
          {"ts_0_is_true_time_us", us(zero_.time_since_epoch())},
          {"nominal_lengths_us", {{"pulse", us(kShownPulse)}, {"message", us(kShownMessage)}}},
          {"left_out", left_out_notes(trace_)}});
+    if (!trace_.program_failures.empty()) {
+      data["program_failures"] = failure_lines(trace_.program_failures);
+    }
     return data;
   }
 

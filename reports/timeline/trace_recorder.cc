@@ -223,8 +223,10 @@ Trace record_trace(const scenarios::Scenario& scenario, const evaluation::Pipeli
   const evaluation::ScorerSetup setup = evaluation::scorer_setup(scenario, choice);
   evaluation::PipelineScorer scorer(setup);
   TraceRecorder recorder(scorer, setup.stream, options);
-  evaluation::score_run(source, choice, seed, scorer, recorder, &recorder);
+  evaluation::SeedScore score =
+      evaluation::score_run(source, choice, seed, scorer, recorder, &recorder);
   Trace trace = recorder.finish();
+  trace.program_failures = std::move(score.program_failures);
   trace.scenario = scenario.name;
   trace.derivation = scenario.derivation;
   trace.pipeline = choice.pipeline.name;

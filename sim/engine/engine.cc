@@ -28,7 +28,7 @@ double seconds_of(TrueTime time) { return to_seconds(time.time_since_epoch()); }
 
 }  // namespace
 
-Engine::Engine(EngineLimits limits, TrueTime start) : limits_(limits), now_(start) {}
+Engine::Engine(EngineLimits limits, TrueTime start) : limits_(std::move(limits)), now_(start) {}
 
 HandlerId Engine::attach(EventHandler& handler) {
   SIMBENCH_ASSERT(handlers_.size() < kCallbackHandler, "too many event handlers");
@@ -89,6 +89,7 @@ void Engine::execute_through(TrueTime last) {
   while (events_ < limits_.max_events) {
     stopped_ = is_cancelled();
     if (stopped_) return;
+    if (limits_.on_poll) limits_.on_poll(now_);
     const std::uint64_t next_poll = std::min(limits_.max_events, events_ + kEventsBetweenPolls);
     while (events_ < next_poll) {
       QueueEntry entry;

@@ -59,6 +59,8 @@ struct EngineLimits {
   TrueTime max_time = TrueTime(std::chrono::hours(24 * 365));  // events at max_time still happen
   // Polled after some thousand events; once true, the run stops as by stop(). May be null.
   const std::atomic<bool>* cancel = nullptr;
+  // Called as often, with the present time; empty: never. It must not change the world.
+  std::function<void(TrueTime now)> on_poll{};
 };
 
 // The message has the limit, the virtual time, the events executed and pending, and what live

@@ -162,6 +162,10 @@ void SimHost::report_exchange(const Exchange& exchange) {
 
 void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_event(outcome); }
 
+void SimHost::report_program_failure(const ProgramFailure& failure) {
+  world_.sink.on_event(failure);
+}
+
 void SimHost::report_delays(const SessionDelays& delays) { world_.sink.on_event(delays); }
 
 void SimHost::report_alignment(const AlignmentReport& report) { world_.sink.on_event(report); }

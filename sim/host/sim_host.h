@@ -128,6 +128,7 @@ class SimHost final : public Host {
   double random_uniform() override { return algorithm_draws_.uniform(); }
   void report_exchange(const Exchange& exchange) override;
   void report_outcome(const SyncOutcome& outcome) override;
+  void report_program_failure(const ProgramFailure& failure) override;
   void report_delays(const SessionDelays& delays) override;
   void report_alignment(const AlignmentReport& report) override;
 

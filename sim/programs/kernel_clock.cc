@@ -22,6 +22,7 @@ class Steered final : public clocks::AdjustedClock {
 KernelClock::KernelClock(SimHost& host)
     : host_(host),
       changed_(host.world().context, host.name("kernel: next second")),
+      steered_(host.world().context, host.name("kernel: first steering")),
       kernel_(epoch_ns(host.system_clock().read(host.true_now()))) {}
 
 Task<void> KernelClock::run() {
@@ -37,6 +38,10 @@ Task<void> KernelClock::run() {
   }
 }
 
+Task<void> KernelClock::until_steered(std::optional<TrueTime> limit) {
+  while (!was_steered() && !(limit && host_.true_now() >= *limit)) co_await steered_.wait(limit);
+}
+
 Task<KernelClock::Answer> KernelClock::adjust(timex request) {
   Answer answer{.error = clocks::KernelDiscipline::refusal(request), .now = request};
   const long adjtime_before_us = kernel_.adjtime_left_us();
@@ -44,6 +49,7 @@ Task<KernelClock::Answer> KernelClock::adjust(timex request) {
     Steered steered(clock, at);
     kernel_.apply(request, steered);
     changed_.notify();
+    if (was_steered()) steered_.notify();
   };
   if (answer.error == 0 && kernel_.changes_clock(request)) {
     co_await host_.clock().change(change);
@@ -64,6 +70,7 @@ Task<void> KernelClock::set(HostTime reading) {
     Steered steered(clock, at);
     kernel_.forget(steered);
     changed_.notify();
+    steered_.notify();
   };
   co_await host_.clock().change(change);
 }

@@ -14,6 +14,7 @@
 #include <sys/timex.h>
 
 #include <cstdint>
+#include <optional>
 
 #include "algorithms/ports/host.h"
 #include "clocks/kernel_discipline.h"
@@ -29,6 +30,15 @@ inline constexpr std::int64_t kEpochNs = shim::kWorldBegin;
 
 constexpr std::int64_t epoch_ns(HostTime time) { return nanoseconds_of(time) + kEpochNs; }
 constexpr HostTime from_epoch_ns(std::int64_t ns) { return HostTime(Nanoseconds(ns - kEpochNs)); }
+
+// The oscillators of the simulated world may read less than 0 when a run begins; the monotonic
+// clocks of its programs are ahead of them by this much, since Linux' never do.
+inline constexpr std::int64_t kBootNs = 2'000'000 * kSecondNs;
+
+constexpr std::int64_t monotonic_ns(SteadyTime time) { return nanoseconds_of(time) + kBootNs; }
+constexpr SteadyTime from_monotonic_ns(std::int64_t ns) {
+  return SteadyTime(Nanoseconds(ns - kBootNs));
+}
 
 class KernelClock {
  public:
@@ -48,10 +58,15 @@ class KernelClock {
   Task<Answer> adjust(timex request);
   // clock_settime().
   Task<void> set(HostTime reading);
+  // Whether a program has set or steered the clock.
+  bool was_steered() const { return kernel_.was_steered(); }
+  // Until one has, or this time has come; nothing: for ever. One coroutine at a time.
+  Task<void> until_steered(std::optional<TrueTime> limit);
 
  private:
   SimHost& host_;
   WaitPoint changed_;
+  WaitPoint steered_;
   clocks::KernelDiscipline kernel_;
 };
 

@@ -201,7 +201,7 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock, bool is_free) {
     const HostTime now = co_await around_.host.clock().now();
     reading = epoch_ns(now);
   } else {
-    reading = nanoseconds_of(around_.host.steady_clock().now());
+    reading = monotonic_ns(around_.host.steady_clock().now());
   }
   if (around_.host.true_now() == asked) co_await around_.host.sleep_for(kLeastReading);
   co_return Answer{.value = reading};

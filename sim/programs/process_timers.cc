@@ -15,7 +15,7 @@ constexpr Nanoseconds kLookAgain = std::chrono::seconds(1);
 
 std::int64_t now_of(const SimHost& host, Deadline clock) {
   return clock == Deadline::kAtSystemTime ? epoch_ns(host.system_clock().read(host.true_now()))
-                                          : nanoseconds_of(host.steady_clock().now());
+                                          : monotonic_ns(host.steady_clock().now());
 }
 
 TrueTime look_at_system_time(const SimHost& host, std::int64_t at) {
@@ -49,7 +49,7 @@ std::optional<TrueTime> next_look(const SimHost& host, const WakeTime& time) {
     case Deadline::kAtSystemTime:
       return look_at_system_time(host, time.at);
     default:
-      return host.next_look(SteadyTime(Nanoseconds(time.at)));
+      return host.next_look(from_monotonic_ns(time.at));
   }
 }
 

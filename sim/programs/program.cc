@@ -14,8 +14,6 @@
 #include <thread>
 #include <utility>
 
-#include "recording/text_fields.h"
-
 namespace simbench::sim {
 namespace {
 
@@ -193,8 +191,8 @@ Task<void> Program::end_process(Process& process) {
 Task<void> Program::serve() {
   co_await run(threads_.front());
   while (!threads_.empty()) co_await has_ended_.wait();
-  const std::string how = child_.ending(reason_);
-  if (!is_stopped_) ending_ = printable_name(how);
+  end_ = child_.end_of(reason_);
+  if (!is_stopped_) ending_ = end_.text();
 }
 
 Task<Process::Answer> Program::answer(ProgramThread& thread, ChildRequest request) {

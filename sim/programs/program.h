@@ -68,6 +68,8 @@ class Program {
   void stop();
   // Why it ended by itself, one line; empty while it runs, and once it is stopped.
   const std::string& ending() const { return ending_; }
+  // The same in its parts.
+  const processes::ProgramEnd& end() const { return end_; }
 
  private:
   using Answer = Process::Answer;
@@ -109,6 +111,7 @@ class Program {
   std::list<ProgramThread> threads_{};
   std::string reason_;
   std::string ending_;
+  processes::ProgramEnd end_;
   TrueTime counted_since_;
   int made_ = 0;
   bool is_over_ = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <stdexcept>
@@ -11,6 +12,8 @@
 #include "algorithms/host_sync/join.h"
 #include "processes/lesser_user.h"
 #include "processes/placeholders.h"
+#include "processes/program_endings.h"
+#include "recording/program_failure.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/program.h"
 
@@ -21,6 +24,10 @@ using processes::fill;
 using processes::HostPlaces;
 using scenarios::HostPrograms;
 
+constexpr PeerId kMaster = 0;
+// What programs have at least until a clock that nobody has set is one that they failed to set.
+constexpr Nanoseconds kLeastNeeded = std::chrono::minutes(1);
+
 // For its commands, environment and files alike.
 HostPlaces places_of(SimHost& host) {
   return {.host = host.id(),
@@ -28,14 +35,35 @@ HostPlaces places_of(SimHost& host) {
           .drift = host.stored_frequency()};
 }
 
+// What the programs of one host tell of it.
+struct Told {
+  std::function<void(const ProgramFailure&)> failed;
+  // When the run is over: with notes, and whether nobody set a slave's clock, which nothing says.
+  std::function<void(const std::vector<std::string>& notes, bool is_unset)> gone;
+};
+
 // The programs of one host.
 class RunningPrograms {
  public:
-  RunningPrograms(SimHost& host, std::size_t hosts)
-      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
+  RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, Told told)
+      : host_(host),
+        hosts_(hosts),
+        network_(host, hosts),
+        kernel_(host),
+        card_(host),
+        endings_(host, programs),
+        told_(std::move(told)) {}
+  RunningPrograms(const RunningPrograms&) = delete;
+  RunningPrograms& operator=(const RunningPrograms&) = delete;
+  ~RunningPrograms() {
+    const bool is_said = is_reported_unset_ || endings_.failure();
+    told_.gone(endings_.notes(), host_.id() != kMaster && !kernel_.was_steered() && !is_said);
+  }
 
+  // `kept`: the folder as the user has named it; empty: it is not kept.
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder, std::shared_ptr<processes::RunUse> run) {
+             const std::string& folder, std::shared_ptr<processes::RunUse> run,
+             const std::string& kept) {
     const std::size_t number = programs_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -49,13 +77,13 @@ class RunningPrograms {
         .readable = fill(settings.programs.readable, places),
         .run = std::move(run)};
     if (settings.patience) child.patience = *settings.patience;
+    logs_.push_back(kept.empty() ? "" : fmt::format("{}/{}", kept, child.log_name));
     programs_.emplace_back(Program::Surroundings{host_, network_, kernel_, card_, processes_},
                            child);
   }
 
-  // `on_end` gets the last words of the first program that ends by itself.
-  Task<void> run(std::optional<Nanoseconds> duration,
-                 std::function<void(const std::string&)> on_end) {
+  // `needed`: how long the programs take to synchronise the host. `duration`: nothing, for ever.
+  Task<void> run(Nanoseconds needed, std::optional<Nanoseconds> duration) {
     std::vector<Task<void>> tasks;
     for (PeerId peer = 0; peer < hosts_; ++peer) {
       if (peer == host_.id()) continue;
@@ -64,19 +92,37 @@ class RunningPrograms {
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
-    for (Program& program : programs_) tasks.push_back(serve(program, on_end));
+    for (std::size_t i = 0; i < programs_.size(); ++i) tasks.push_back(serve(i));
+    if (host_.id() != kMaster) tasks.push_back(watch_clock(needed));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
   }
 
  private:
-  Task<void> serve(Program& program, std::function<void(const std::string&)> on_end) {
+  Task<void> serve(std::size_t number) {
+    Program& program = programs_[number];
     const TrueTime begin = host_.true_now();
     co_await program.serve();
-    if (program.ending().empty() || std::exchange(has_failed_, true)) co_return;
-    const double after_s = to_seconds(host_.true_now() - begin);
-    on_end(after_s < 1 ? program.ending()
-                       : fmt::format("after {:.0f} s {}", after_s, program.ending()));
+    if (program.ending().empty()) co_return;  // it was stopped
+    const bool had_failed = endings_.failure().has_value();
+    endings_.add(program.end(), {.at = host_.true_now() - begin, .log = logs_[number]},
+                 kernel_.was_steered());
+    if (!had_failed && endings_.failure()) told_.failed(*endings_.failure());
+  }
+
+  // A slave is not synchronised while nobody has set its clock.
+  Task<void> watch_clock(Nanoseconds needed) {
+    co_await kernel_.until_steered(host_.true_now() + needed);
+    if (kernel_.was_steered() || endings_.failure()) co_return;
+    is_reported_unset_ = true;
+    host_.report_outcome({.slave = host_.id(),
+                          .synchronised = false,
+                          .passes = 0,
+                          .message = fmt::format("host {}: no program has set its clock in {:g} s",
+                                                 host_.id(), to_seconds(needed))});
+    co_await kernel_.until_steered(std::nullopt);
+    if (endings_.failure()) co_return;
+    host_.report_outcome({.slave = host_.id(), .synchronised = true, .passes = 0, .message = ""});
   }
 
   Task<void> stop_after(Nanoseconds duration) {
@@ -91,7 +137,10 @@ class RunningPrograms {
   CardClock card_;
   HostProcesses processes_;
   std::deque<Program> programs_;
-  bool has_failed_ = false;
+  std::vector<std::string> logs_;  // by program
+  processes::ProgramEndings endings_;
+  bool is_reported_unset_ = false;
+  Told told_;
 };
 
 SimHost& simulated(Host& host) {
@@ -109,12 +158,19 @@ std::optional<Nanoseconds> ProgramSync::warm_up() const {
 }
 
 std::vector<std::string> ProgramSync::notes() const {
-  std::vector<std::string> notes;
-  for (const auto& [ending, hosts] : endings_) {
-    notes.push_back(fmt::format("{} {}: {}", hosts.size() == 1 ? "host" : "hosts",
-                                fmt::join(hosts, ", "), ending));
+  std::vector<std::string> notes = failure_lines(failures_);
+  notes.insert(notes.end(), notes_.begin(), notes_.end());
+  if (!unset_.empty()) {
+    notes.push_back(fmt::format("{} {}: no program has set the clock, which ran free",
+                                unset_.size() == 1 ? "host" : "hosts", fmt::join(unset_, ", ")));
   }
   return notes;
+}
+
+std::string ProgramSync::kept_folder(const SimHost& host) const {
+  if (settings_.log_folder.empty()) return "";
+  return fmt::format("{}/{}/seed{}/host{}", settings_.log_folder, settings_.pipeline,
+                     host.world().run_seed, host.id());
 }
 
 std::string ProgramSync::make_folder(SimHost& host) {
@@ -123,32 +179,30 @@ std::string ProgramSync::make_folder(SimHost& host) {
     if (temporary_ == nullptr) temporary_ = std::make_unique<TemporaryFolder>();
     processes::let_pass(temporary_->path());
     folder = temporary_->path();
+    folder /= fmt::format("host{}", host.id());
   } else {
-    folder = std::filesystem::absolute(settings_.log_folder) / settings_.pipeline /
-             fmt::format("seed{}", host.world().run_seed);
+    folder = std::filesystem::absolute(kept_folder(host));
   }
-  folder /= fmt::format("host{}", host.id());
   return processes::make_folder(folder, settings_.programs, places_of(host));
-}
-
-void ProgramSync::fail(Host& host, const std::string& ending) {
-  endings_[ending].insert(host.id());
-  host.report_outcome({.slave = host.id(),
-                       .synchronised = false,
-                       .passes = 0,
-                       .message = fmt::format("host {}: {}", host.id(), ending)});
 }
 
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
-  RunningPrograms programs(own, settings_.hosts);
+  RunningPrograms programs(
+      own, settings_.hosts, commands.size(),
+      {.failed = [this](const ProgramFailure& failure) { failures_.push_back(failure); },
+       .gone =
+           [this, id = host.id()](const std::vector<std::string>& notes, bool is_unset) {
+             notes_.insert(notes_.end(), notes.begin(), notes.end());
+             if (is_unset) unset_.insert(id);
+           }});
   const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder, run_);
+    programs.start(command, settings_, folder, run_, kept_folder(own));
   }
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
-  co_await programs.run(duration, [this, &host](const std::string& ending) { fail(host, ending); });
+  co_await programs.run(std::max(*warm_up(), kLeastNeeded), duration);
 }
 
 Task<void> ProgramSync::run_master(Host& host, std::vector<PeerId> /*slaves*/) {

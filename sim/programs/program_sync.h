@@ -6,8 +6,11 @@
 // their placeholders filled in (processes/placeholders.h), and what the programs print goes to
 // "0_chronyd.log", by number and name.
 //
-// The first program of a host that ends is the host's failure, and a note with its last words;
-// nobody says that a host is synchronised.
+// A program that ends by itself may be the host's failure, or have done its work
+// (processes/program_endings.h). A slave whose clock no program has set or steered after
+// run_before_capture_s, or a minute if that is more, is not synchronised until one does. After the
+// run notes() has the failures, slaves that nobody has set in a shorter run, and a master whose
+// programs have all ended.
 //
 // Only one process runs at a time, and time moves only when all wait: the same scenario and seed
 // give the same bytes. For the simulated world only: other hosts are a std::logic_error.
@@ -64,13 +67,15 @@ class ProgramSync final : public HostSync {
   Task<void> run(Host& host, std::vector<scenarios::HostPrograms::Command> commands);
   // Empty, and made.
   std::string make_folder(SimHost& host);
-  void fail(Host& host, const std::string& ending);
+  // The host's log folder, as the user has named it; empty: nobody keeps it.
+  std::string kept_folder(const SimHost& host) const;
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
   std::shared_ptr<processes::RunUse> run_ = std::make_shared<processes::RunUse>();
-  std::set<std::string> remarks_;                    // on how programs run
-  std::map<std::string, std::set<PeerId>> endings_;  // the hosts whose programs ended so
+  std::vector<ProgramFailure> failures_;  // one of a host, in the order of their ends
+  std::vector<std::string> notes_;
+  std::set<PeerId> unset_;  // slaves whose clocks nobody set, which nothing else says
 };
 
 }  // namespace simbench::sim

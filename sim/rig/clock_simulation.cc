@@ -1,5 +1,6 @@
 #include "sim/rig/clock_simulation.h"
 
+#include <functional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -25,6 +26,9 @@ class OutcomesOnly final : public RecordingSink {
   void on_frames(std::span<const FrameRecord>, std::span<const FrameTruth>) override {}
   void on_event(const RecordingEvent& event) override {
     if (const auto* outcome = std::get_if<SyncOutcome>(&event)) sink_.on_outcome(*outcome);
+    if (const auto* failure = std::get_if<ProgramFailure>(&event)) {
+      sink_.on_program_failure(*failure);
+    }
   }
 
  private:
@@ -73,7 +77,7 @@ class ClockRun {
         sink_(sink),
         messages_(TrueTime{} + request.duration, sink),
         outcomes_(sink),
-        engine_({.cancel = request.cancel}),
+        engine_({.cancel = request.cancel, .on_poll = share_of_time()}),
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario_, request.seed, request.pipeline + "@" + scenario_.name,
                request.host_sync != nullptr ? request.host_sync->initial_clocks()
@@ -103,6 +107,13 @@ class ClockRun {
   }
 
  private:
+  std::function<void(TrueTime)> share_of_time() const {
+    if (!request_.share_done) return {};
+    return [this](TrueTime now) {
+      request_.share_done(to_seconds(now - TrueTime{}) / to_seconds(end() - TrueTime{}));
+    };
+  }
+
   TrueTime end() const {
     const bool is_lost = request_.master_lost_for > Nanoseconds(0);
     return TrueTime{} + request_.duration +

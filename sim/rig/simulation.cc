@@ -103,7 +103,8 @@ class WorldRun {
         cancel_(request.cancel),
         engine_({.max_events = limits.max_events,
                  .max_time = limits.max_time,
-                 .cancel = request.cancel},
+                 .cancel = request.cancel,
+                 .on_poll = share_of_time(request.share_done)},
                 start_),
         seed_(request.seed),
         cameras_(cameras),
@@ -180,6 +181,17 @@ class WorldRun {
 
   std::optional<Nanoseconds> service_time() const {
     return host_sync_ != nullptr ? host_sync_->warm_up() : std::nullopt;
+  }
+  // The share of the time until the last evaluated pulse. If a protocol ends by itself, nobody
+  // knows it.
+  std::function<void(TrueTime)> share_of_time(const ShareDone& share_done) const {
+    if (!share_done || !service_time()) return {};
+    const double pulses = static_cast<double>(evaluated_slots(scenario_).last);
+    const double whole_s = to_seconds(*service_time() + wait_before_capture()) +
+                           1e-3 * pulses * scenario_.trigger.period_ms();
+    return [this, share_done, whole_s](TrueTime now) {
+      share_done(std::min(1.0, to_seconds(now - start_) / whole_s));
+    };
   }
   InitialClocks initial_clocks() const {
     return host_sync_ != nullptr ? host_sync_->initial_clocks() : InitialClocks::kUnsynchronised;

@@ -19,5 +19,12 @@ TEST(InterruptHandler, ASignalBetweenTwoWorksStopsTheNextOne) {
   InterruptHandler::set(false);
 }
 
+TEST(InterruptHandler, TheEndOfAJobIsOneToo) {
+  const InterruptHandler handler;
+  ASSERT_EQ(std::raise(SIGTERM), 0);
+  EXPECT_TRUE(InterruptHandler::raised());
+  InterruptHandler::set(false);
+}
+
 }  // namespace
 }  // namespace simbench::app

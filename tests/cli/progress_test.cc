@@ -128,6 +128,42 @@ TEST(Progress, JsonLinesTenASecondAtMost) {
   EXPECT_EQ(bench.new_text(), "");
 }
 
+TEST(Progress, ALogGetsOneEstimateOfRunsUnderWay) {
+  Bench bench({.terminal = false});
+  bench.progress.update({.done = 0.01, .total = 2, .left_s = evaluation::kNan});
+  EXPECT_EQ(bench.new_text(), "") << "nothing is known";
+  bench.progress.update({.done = 0.05, .total = 2, .left_s = 1});
+  EXPECT_EQ(bench.new_text(), "") << "a moment";
+  bench.progress.update({.done = 0.06, .total = 2, .left_s = 40.2});
+  EXPECT_EQ(bench.new_text(), "about 41 s left, by the speed of the first 3 %\n");
+  bench.progress.update({.done = 0.08, .total = 2, .left_s = 39});
+  EXPECT_EQ(bench.new_text(), "") << "once";
+  bench.now = 20;
+  bench.progress.update(1, 2);
+  EXPECT_EQ(bench.new_text(), "1 of 2 runs (50 %), 39 s left\n") << "as measured, not 20 s";
+}
+
+TEST(Progress, ABarMovesWithinRuns) {
+  Bench bench({.terminal = true, .colour = false, .width = 60});
+  bench.now = 5;
+  bench.progress.update({.done = 0.5, .total = 1, .left_s = 5});
+  EXPECT_THAT(bench.new_text(), HasSubstr("  50 % of 1 run, 5 s left"));
+  bench.progress.update({.done = 0.6, .total = 1, .left_s = 4});
+  EXPECT_EQ(bench.new_text(), "") << "ten times a second at most";
+}
+
+TEST(Progress, JsonHasTheEstimateBeforeTheFirstRunIsDone) {
+  Bench bench({.json = true});
+  bench.new_text();
+  bench.now = 1;
+  bench.progress.update({.done = 0.1, .total = 2, .left_s = evaluation::kNan});
+  EXPECT_EQ(bench.new_text(), "");
+  bench.progress.update({.done = 0.2, .total = 2, .left_s = 9});
+  EXPECT_EQ(bench.new_text(),
+            "{\"event\":\"progress\",\"done\":0,\"total\":2,\"unit\":\"runs\","
+            "\"elapsed_s\":1.0,\"eta_s\":9.0}\n");
+}
+
 TEST(Progress, NothingToDoIsNoProgress) {
   Bench bench({.terminal = false});
   bench.progress.update(0, 0);

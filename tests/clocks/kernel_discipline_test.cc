@@ -286,5 +286,29 @@ TEST(KernelDisciplineProperties, ArbitraryRequestsKeepTheRanges) {
   }
 }
 
+TEST(KernelDiscipline, KnowsWhetherAnybodySteeredIt) {
+  const auto was_steered_by = [](unsigned modes, long number) {
+    Host host(kNoon);
+    KernelDiscipline kernel(host.epoch_ns());
+    timex request = request_of(modes);
+    request.offset = request.freq = number;
+    kernel.apply(request, host);
+    kernel.move_on(host);
+    return kernel.was_steered();
+  };
+  EXPECT_FALSE(was_steered_by(0, 0)) << "it is read";
+  EXPECT_FALSE(was_steered_by(ADJ_MAXERROR, 1));
+  EXPECT_FALSE(was_steered_by(ADJ_FREQUENCY, 0)) << "it is what it was";
+  EXPECT_FALSE(was_steered_by(ADJ_OFFSET_SINGLESHOT, 0)) << "adjtime() of nothing";
+  EXPECT_FALSE(was_steered_by(ADJ_OFFSET_SS_READ, 5));
+  EXPECT_TRUE(was_steered_by(ADJ_FREQUENCY, 65536));
+  EXPECT_TRUE(was_steered_by(ADJ_OFFSET_SINGLESHOT, 5));
+  EXPECT_TRUE(was_steered_by(ADJ_SETOFFSET, 0));
+  Host host(kNoon);
+  KernelDiscipline kernel(host.epoch_ns());
+  kernel.forget(host);
+  EXPECT_TRUE(kernel.was_steered()) << "clock_settime()";
+}
+
 }  // namespace
 }  // namespace simbench::clocks

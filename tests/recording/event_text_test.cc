@@ -80,6 +80,13 @@ TEST(EventTextTest, TheOtherKinds) {
                                   .get = Nanoseconds(7),
                                   .set = Nanoseconds(8)}),
             "delays,2,3,-1,9,4,-5,6,7,8");
+  EXPECT_EQ(to_line(ProgramFailure{.host = 2,
+                                   .program = "a,b",
+                                   .at = Nanoseconds(7),
+                                   .how = "exited with status 1",
+                                   .last_words = "c\\d",
+                                   .log = "e\nf"}),
+            "program,2,7,a\\,b,exited with status 1,c\\\\d,e\\nf");
 }
 
 TEST(EventTextTest, ReadsBackWhateverWasWritten) {
@@ -140,7 +147,7 @@ TEST(EventTextTest, EveryPrefixOfALineIsSafe) {
 TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_EQ(line_error("fraem,1"),
             "column 1 (kind): found 'fraem', allowed: frame, pulse, adjustment, poll, exchange, "
-            "outcome, alignment, led, delays");
+            "outcome, alignment, led, delays, program");
   EXPECT_EQ(line_error("poll,1x,2,3,4,5,6"),
             "column 2 (camera): found '1x', allowed: a whole number from 0 to 4294967295");
   EXPECT_EQ(line_error("poll,1,4294967296,3,4,5,6"),

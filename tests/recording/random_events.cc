@@ -154,6 +154,12 @@ struct Same {
     };
     return all(a) == all(b);
   }
+  bool operator()(const ProgramFailure& a, const ProgramFailure& b) const {
+    const auto all = [](const ProgramFailure& f) {
+      return members(f.host, f.program, f.at, f.how, f.last_words, f.log);
+    };
+    return all(a) == all(b);
+  }
   template <class A, class B>
   bool operator()(const A&, const B&) const {
     return false;
@@ -164,7 +170,7 @@ struct Same {
 
 KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
   const auto host = [&] { return any_number<std::uint32_t>(random) % bounds.hosts; };
-  switch (random() % 9) {
+  switch (random() % 10) {
     case 0: {
       PulseTruth event;
       event.pulse = any_number<std::int64_t>(random);
@@ -224,6 +230,10 @@ KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
       }
       return event;
     }
+    case 8:
+      return ProgramFailure{
+          host(),           any_text(random), Nanoseconds(any_number<std::int64_t>(random)),
+          any_text(random), any_text(random), any_text(random)};
     default:
       return any_frame(random, bounds.cameras);
   }

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -43,7 +44,7 @@ class ProgramsCommand : public ProgramTest {
     write("one.json", {{"master", Json::array({Json::array({"/bin/true"})})},
                        {"slave", Json::array({Json::array({word})})}});
     const ProgramResult result = clocks({"--program", "one=one.json"});
-    EXPECT_EQ(result.status, 0) << "the other row goes on";
+    EXPECT_EQ(result.status, 5) << "it failed in every seed";
     EXPECT_THAT(result.out, HasSubstr("\nfree_running "));
     return result.err + result.out;
   }
@@ -105,8 +106,8 @@ TEST_F(ProgramsCommand, AFileOfTheMachineIsReadWhereItIsNamed) {
   };
   if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "no python3";
   EXPECT_THAT(ending(Json::array()), HasSubstr("PermissionError"));
-  EXPECT_THAT(ending({"{here}/note.txt"}), HasSubstr("exited with status 0: the text of the note"));
-  EXPECT_THAT(ending({"{here}"}), HasSubstr("exited with status 0: the text of the note"));
+  EXPECT_THAT(ending({"{here}/note.txt"}), HasSubstr("the text of the note"));
+  EXPECT_THAT(ending({"{here}"}), HasSubstr("the text of the note"));
 }
 
 // Its programs' files lie where nobody may not go.
@@ -117,7 +118,191 @@ TEST_F(ProgramsCommand, RootIsToldOfProgramsThatAreNotNobodys) {
                                     "not as nobody: nobody may not enter or read " +
                                     folder().string()));
   const ProgramResult open = clocks({"--program", "chronyd"});
-  EXPECT_THAT(open.err, Not(HasSubstr("note:")));
+  EXPECT_THAT(open.err, Not(HasSubstr("note: chronyd runs as root")));
+}
+
+// The programs are those of tests/programs/endings.cc.
+class FailedProgram : public ProgramsCommand {
+ protected:
+  // A pipeline that runs this on each slave.
+  std::string pipeline(const std::string& name, const std::vector<std::string>& words) const {
+    const std::filesystem::path bin = std::filesystem::path(SIMBENCH_PROGRAM).parent_path();
+    const auto command = [&bin](std::vector<std::string> all) {
+      all.insert(all.begin(), (bin / "simbench_endings").string());
+      return Json::array({all});
+    };
+    write(name + ".json",
+          {{"master", command({"wait"})}, {"slave", command(words)}, {"run_before_capture_s", 2}});
+    return name + "=" + name + ".json";
+  }
+  ProgramResult run_cameras(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {
+        "run", "--scenario", "9cam_3host_30fps_azure_kinect", "--pipelines",
+        "k4a", "--set",      "/timeline/frames=30",           "--no-levers"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+};
+
+TEST_F(FailedProgram, ItsRowHasNoNumbersAndTheStatusSaysSo) {
+  const std::string mine = pipeline("mine", {"late"});
+  const ProgramResult result =
+      run_cameras({"--program", mine, "--seeds", "2", "--format", "json", "-o", "out"});
+  EXPECT_EQ(result.status, 5) << result.err;
+  EXPECT_THAT(names_in("out"), testing::Contains("results.json")) << "written all the same";
+  const Json answer = Json::parse(result.out)["answer"];
+  EXPECT_EQ(answer["failed"][0]["pipeline"], "mine");
+  const Json row = Json::parse(result.out)["rows"][1];
+  EXPECT_EQ(row["standing"], "failed");
+  EXPECT_THAT(
+      row["failed"].get<std::string>(),
+      AllOf(StartsWith("a program ended in 2 of 2 seeds: seed 1, host "), HasSubstr(", at 2.4"),
+            HasSubstr(" s: simbench_endings: exited with status 4: lost patience")));
+  for (const char* const metric : {"amd_ms", "absolute_error_ms", "host_error_ms", "max_te_ms"}) {
+    EXPECT_EQ(row[metric]["values"], Json::array({nullptr, nullptr})) << metric;
+  }
+  EXPECT_EQ(row["program_failures"].size(), 4U) << "two slaves, two seeds";
+  EXPECT_EQ(row["program_failures"][0]["how"], "exited with status 4");
+  EXPECT_TRUE(row["program_failures"][0]["log"].is_null());
+  EXPECT_THAT(result.err,
+              HasSubstr("note: simulates 2 seeds of 3 hosts: 2 pipelines, of which mine "
+                        "(simbench_endings, "));
+}
+
+TEST_F(FailedProgram, NoFormatHasNumbersOfIt) {
+  const std::string mine = pipeline("mine", {"late"});
+  for (const char* const format : {"table", "markdown", "latex", "csv"}) {
+    const ProgramResult result =
+        run_cameras({"--program", mine, "--seeds", "1", "--format", format, "--verbose"});
+    EXPECT_EQ(result.status, 5);
+    std::istringstream lines(result.out);
+    int rows = 0;
+    for (std::string line; std::getline(lines, line);) {
+      // The cells of its rows: the name, words, counts of 0, and "-" or nothing.
+      if (line.find("mine ") != 0 && line.find("mine,") != 0 && line.find("| mine ") != 0 &&
+          line.find("    mine ") != 0) {
+        continue;
+      }
+      if (line.find("mine =") != std::string::npos) continue;
+      ++rows;
+      EXPECT_EQ(line.find(" us"), std::string::npos) << line;
+      EXPECT_EQ(line.find(" ms"), std::string::npos) << line;
+      EXPECT_EQ(line.find(" %"), std::string::npos) << line;
+    }
+    EXPECT_GT(rows, 0) << format << result.out;
+  }
+  const ProgramResult tidy = run_cameras({"--program", mine, "--seeds", "1", "--format", "tidy"});
+  EXPECT_THAT(tidy.out, AllOf(HasSubstr(",k4a,"), Not(HasSubstr(",mine,"))));
+}
+
+TEST_F(FailedProgram, OneSeedOfFourFailsItsRowAlone) {
+  const ProgramResult result = run_cameras(
+      {"--program", pipeline("mine", {"unlucky", "{host}"}), "--seeds", "4", "--format", "json"});
+  EXPECT_EQ(result.status, 0) << "not in every seed";
+  const Json row = Json::parse(result.out)["rows"][1];
+  EXPECT_EQ(row["standing"], "failed");
+  const std::size_t failed = row["program_failures"].size();
+  EXPECT_GT(failed, 0U);
+  EXPECT_LT(failed, 4U);
+  EXPECT_EQ(row["program_failures"][0]["host"], 2);
+  std::size_t without_values = 0;
+  for (const Json& value : row["amd_ms"]["values"]) without_values += value.is_null() ? 1 : 0;
+  EXPECT_EQ(without_values, failed);
+  EXPECT_EQ(row["scored_seeds"], 4 - failed);
+}
+
+TEST_F(FailedProgram, LogsAreNamed) {
+  const ProgramResult result = run_cameras(
+      {"--program", pipeline("mine", {"late"}), "--seeds", "1", "--program-log", "logs"});
+  EXPECT_THAT(result.out, HasSubstr("What the program of mine printed: logs/mine/seed1/host"));
+  const ProgramResult without = run_cameras({"--program", "mine=mine.json", "--seeds", "1"});
+  EXPECT_THAT(without.out, HasSubstr("--program-log DIR keeps what programs print"));
+}
+
+TEST_F(FailedProgram, OneShotClientsHaveNotFailed) {
+  const ProgramResult result =
+      run_cameras({"--program", pipeline("mine", {"set"}), "--seeds", "1", "--format", "json"});
+  EXPECT_EQ(result.status, 0);
+  const Json row = Json::parse(result.out)["rows"][1];
+  EXPECT_EQ(row["program_failures"], Json::array());
+  EXPECT_EQ(row["unsynchronised_hosts"], 0);
+  EXPECT_FALSE(row["host_error_ms"]["median"].is_null());
+}
+
+TEST_F(FailedProgram, OtherCommandsSayItToo) {
+  const std::string mine = pipeline("mine", {"late"});
+  const std::vector<std::string> world = {"--scenario", "9cam_3host_30fps_azure_kinect",
+                                          "--set",      "/timeline/frames=30",
+                                          "--program",  mine};
+  const auto with = [&world](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, world.begin(), world.end());
+    return words;
+  };
+  const ProgramResult recorded = run(with({"record", "--pipelines", "mine", "-o", "rec"}));
+  EXPECT_EQ(recorded.status, 5);
+  EXPECT_THAT(recorded.err, HasSubstr("exited with status 4: lost patience"));
+  const ProgramResult replayed = run({"replay", "rec", "--format", "json"});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  const Json row = Json::parse(replayed.out)["rows"][0];
+  EXPECT_EQ(row["standing"], "failed");
+  EXPECT_TRUE(row["amd_ms"]["values"][0].is_null());
+  const ProgramResult traced = run(with({"trace", "-o", "trace.json"}));
+  EXPECT_EQ(traced.status, 5);
+  EXPECT_THAT(traced.err, HasSubstr("warning: hosts 1, 2, first at 2.4"));
+  const ProgramResult budget =
+      run(with({"run", "--pipelines", "mine", "--seeds", "1", "--budget"}));
+  EXPECT_EQ(budget.status, 5);
+  EXPECT_THAT(budget.out, HasSubstr("mine failed: a program ended"));
+  const ProgramResult clocks_run = clocks({"--program", mine, "--format", "json"});
+  EXPECT_EQ(clocks_run.status, 5);
+  EXPECT_EQ(Json::parse(clocks_run.out)["rows"][1]["standing"], "failed");
+}
+
+TEST_F(FailedProgram, IsNotCompared) {
+  run_cameras({"--program", pipeline("mine", {"unlucky", "{host}"}), "--seeds", "4", "-o", "out"});
+  const ProgramResult compared = run({"compare", "out", "--with-baseline", "k4a"});
+  EXPECT_EQ(compared.status, 0);
+  EXPECT_THAT(compared.out, AllOf(HasSubstr("no values"), HasSubstr("mine failed, so nothing of "
+                                                                    "it is compared")));
+  const ProgramResult reported = run({"report", "out", "-o", "page.html"});
+  EXPECT_EQ(reported.status, 0) << reported.err;
+  EXPECT_THAT(content("page.html"), HasSubstr("mine failed: a program ended in "));
+}
+
+TEST_F(ProgramsCommand, ClocksWithProgramsRunTenMinutesUnlessToldOtherwise) {
+  const std::string example = std::string(SIMBENCH_SOURCE_DIR) + "/examples/cristian.json";
+  const std::vector<std::string> command = {
+      "clocks", "--scenario",       "6host_star",   "--set",     "/hosts/count=3",
+      "--set",  "/cameras/count=3", "--seeds",      "1",         "--format",
+      "json",   "--pipelines",      "free_running", "--program", "cristian=" + example};
+  const ProgramResult result = run(command);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json root = Json::parse(result.out);
+  EXPECT_EQ(root["duration_s"], 600);
+  EXPECT_THAT(root["period_note"].get<std::string>(),
+              AllOf(StartsWith("Simulated 600 s, without the loss of the master"),
+                    HasSubstr("--duration-s")));
+  EXPECT_TRUE(root["rows"][1]["holdover_ms"]["600"].is_null());
+  EXPECT_THAT(result.err, HasSubstr("cristian (python3, 600 s each) runs real programs"));
+  const ProgramResult algorithms = run({"clocks", "--scenario", "6host_star", "--pipelines",
+                                        "free_running", "--seeds", "1", "--format", "json"});
+  EXPECT_EQ(Json::parse(algorithms.out)["duration_s"], 36'000);
+  EXPECT_FALSE(Json::parse(algorithms.out).contains("period_note"));
+}
+
+// Folders of hosts are temporary files.
+TEST_F(ProgramsCommand, NoSignalLeavesAFolderBehind) {
+  for (const char* const number : {"INT", "TERM"}) {
+    for (const char* const after_s : {"0.05", "0.5", "1.5"}) {
+      const std::string command = fmt::format(
+          "cd {} && mkdir -p temporary && TMPDIR=$PWD/temporary timeout -s {} {} {} clocks "
+          "--scenario 6host_star --pipelines chronyd --program chronyd --seeds 100000 > /dev/null "
+          "2>&1",
+          folder().string(), number, after_s, SIMBENCH_PROGRAM);
+      EXPECT_NE(std::system(command.c_str()), 0);
+      EXPECT_THAT(names_in("temporary"), testing::IsEmpty()) << number << " after " << after_s;
+    }
+  }
 }
 
 TEST_F(ProgramsCommand, APatienceThatIsNoNumberIsRefused) {

@@ -253,5 +253,26 @@ TEST(PooledCurves, DeviationsAreTheRmsAndMtieTheLargest) {
   EXPECT_TRUE(pooled({}).mtie_ms.empty());
 }
 
+// From the end of a program on clocks run free: no value, curve or reading of it is the program's.
+TEST(ClockScorer, ARunWhoseProgramEndedHasNoValues) {
+  ClockScorer scorer({.duration = seconds(100), .from = seconds(10), .hosts = 3});
+  read_out(scorer, 50, [](std::int64_t) { return std::vector<double>{0, 1, 2}; });
+  scorer.on_program_failure({.host = 2, .program = "chronyd", .how = "exited with status 1"});
+  scorer.on_outcome({.slave = 2, .synchronised = false, .message = "chronyd ended"});
+  read_out(scorer, 100, [](std::int64_t) { return std::vector<double>{0, 1, 2}; });
+  const ClockScore score = scorer.finish(37);
+  for (const Metric& metric : metrics(ResultKind::kClockRuns)) {
+    EXPECT_THAT(metric.of_seed(score.values), IsNan()) << metric.id;
+  }
+  EXPECT_EQ(score.program_failures.size(), 1U);
+  EXPECT_EQ(score.failures.size(), 1U);
+  EXPECT_EQ(score.to_truth.size(), 3U) << "each host has a place";
+  EXPECT_THAT(score.to_truth[1].median_ms, IsNan());
+  EXPECT_THAT(score.host_errors_ms, testing::Each(IsNan()));
+  EXPECT_TRUE(score.curves.mtie_ms.empty());
+  ASSERT_EQ(score.readings.errors_s.size(), 3U);
+  EXPECT_TRUE(score.readings.errors_s[1].empty());
+}
+
 }  // namespace
 }  // namespace simbench::evaluation

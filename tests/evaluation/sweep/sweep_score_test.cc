@@ -74,5 +74,18 @@ TEST(SweepScore, RefusesOtherTexts) {
   EXPECT_FALSE(score_of(text + "1,x"));
 }
 
+TEST(SweepScore, AFailedProgramIsTold) {
+  SweepScore score;
+  score.host_errors_ms = {0, 1};
+  score.failed = "host 3, at 0.250000 s: chronyd: exited with status 1: a; b, c";
+  const std::optional<SweepScore> read = score_of(text_of(score));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->failed, score.failed);
+  EXPECT_EQ(read->host_errors_ms.size(), 2U);
+  score.failed.clear();
+  EXPECT_EQ(text_of(score).find(';', text_of(score).find(';') + 1), std::string::npos)
+      << "others are as they were";
+}
+
 }  // namespace
 }  // namespace simbench::evaluation

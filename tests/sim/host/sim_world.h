@@ -32,6 +32,8 @@ class KeptRecord : public TestSink {
       outcomes.push_back(*outcome);
     } else if (const auto* reported = std::get_if<SessionDelays>(&event)) {
       delays.push_back(*reported);
+    } else if (const auto* failure = std::get_if<ProgramFailure>(&event)) {
+      program_failures.push_back(*failure);
     }
   }
 
@@ -39,6 +41,7 @@ class KeptRecord : public TestSink {
   std::vector<std::pair<std::uint32_t, Exchange>> exchanges;
   std::vector<SyncOutcome> outcomes;
   std::vector<SessionDelays> delays;
+  std::vector<ProgramFailure> program_failures;
 };
 
 class SimWorld {
