@@ -32,7 +32,7 @@ ProgramLog& ProgramLog::operator=(ProgramLog&& other) noexcept {
 }
 
 std::string ProgramLog::last_line() const {
-  constexpr off_t kMost = 400;
+  constexpr off_t kMost = 4096;
   struct stat status {};
   if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) return "";
   std::string end(static_cast<std::size_t>(std::min(kMost, status.st_size)), '\0');
@@ -42,7 +42,8 @@ std::string ProgramLog::last_line() const {
   std::istringstream lines(end);
   std::string last;
   for (std::string line; std::getline(lines, line);) {
-    if (!line.empty()) last = line;
+    const std::size_t size = line.find_last_not_of(" \t\r");
+    if (size != std::string::npos) last = line.substr(0, size + 1);
   }
   return last;
 }

@@ -196,7 +196,7 @@ std::vector<AttackCase> attacks_by_other_ways() {
   all.push_back({at("other_abi"), "", killed});
   all.push_back({at("old_abi"), "", AnyOf(killed, ends("was ended by signal SEGV"))});
   all.push_back(
-      {at("old_page"), "", AnyOf(ends("exited with status 0"), ends("was ended by signal SEGV"))});
+      {at("old_page"), _, AnyOf(ends("exited with status 0"), ends("was ended by signal SEGV"))});
 #endif
   return all;
 }

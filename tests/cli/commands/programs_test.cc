@@ -367,7 +367,7 @@ TEST_F(ProgramsCommand, FilesThatAreNoPipelines) {
               HasSubstr("/host_sync/program/master"));
   EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
                           "files": {"../a": "b"}}}})"),
-              HasSubstr("allowed: a file name without \"/\""));
+              HasSubstr("allowed: a path within the host's folder"));
   EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
                           "environment": {"LD_PRELOAD": "b"}}}})"),
               HasSubstr("LD_"));
