@@ -31,7 +31,12 @@ HostPlaces places_of(SimHost& host) {
 class RunningPrograms {
  public:
   RunningPrograms(SimHost& host, std::size_t hosts)
-      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
+      : host_(host),
+        hosts_(hosts),
+        network_(host, hosts),
+        kernel_(host),
+        card_(host),
+        pulses_(host) {}
 
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
              const std::string& folder) {
@@ -46,8 +51,8 @@ class RunningPrograms {
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim};
     if (settings.patience) child.patience = *settings.patience;
-    programs_.emplace_back(Program::Surroundings{host_, network_, kernel_, card_, processes_},
-                           child);
+    programs_.emplace_back(
+        Program::Surroundings{host_, network_, kernel_, card_, pulses_, processes_}, child);
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -61,6 +66,7 @@ class RunningPrograms {
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
+    tasks.push_back(pulses_.run());
     for (Program& program : programs_) tasks.push_back(serve(program, on_end));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
@@ -86,6 +92,7 @@ class RunningPrograms {
   HostNetwork network_;
   KernelClock kernel_;
   CardClock card_;
+  PulseDevices pulses_;
   HostProcesses processes_;
   std::deque<Program> programs_;
   bool has_failed_ = false;

@@ -82,8 +82,9 @@ class ProcessTest : public testing::Test {
     HostNetwork network(host, 3);
     KernelClock kernel(host);
     CardClock card(host);
+    PulseDevices pulses(host);
     HostProcesses processes;
-    Program program({host, network, kernel, card, processes},
+    Program program({host, network, kernel, card, pulses, processes},
                     {.command = {"program"}, .link = link});
     std::vector<Task<void>> tasks;
     tasks.push_back(kernel.run());
