@@ -13,22 +13,22 @@ namespace {
 struct Known {
   const char* path;
   Kind kind;
-  Device device;
+  HostDevice device;
   unsigned major;  // Linux gives these out as drivers come
 };
-constexpr Known kKnown[] = {{"/dev/ptp0", Kind::kCard, Device::kCard, 249},
-                            {"/dev/pps0", Kind::kPulses, Device::kPulses, 250}};
+constexpr Known kKnown[] = {{"/dev/ptp0", Kind::kCard, HostDevice::kCard, 249},
+                            {"/dev/pps0", Kind::kPulses, HostDevice::kPulses, 250}};
 
-bool has(const Known& device) {
+bool host_has(const Known& device) {
   const std::uint32_t there =
-      device.device == Device::kCard ? identity().has_card_clock : identity().has_pulse_line;
+      device.device == HostDevice::kCard ? identity().has_card_clock : identity().has_pulse_line;
   return there != 0;
 }
 
 // Null with ENOENT.
 const Known* find(const char* path) {
   for (const Known& each : kKnown) {
-    if (strcmp(path, each.path) == 0 && has(each)) return &each;
+    if (strcmp(path, each.path) == 0 && host_has(each)) return &each;
   }
   errno = ENOENT;
   return nullptr;

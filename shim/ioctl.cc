@@ -27,7 +27,7 @@ int count_input(int fd, int& count) {
   return 0;
 }
 
-// Of descriptors of any kind.
+// Requests that descriptors of any kind have.
 bool is_of_any(unsigned long what) {
   return what == FIOCLEX || what == FIONCLEX || what == FIONBIO || what == FIOASYNC;
 }

@@ -100,7 +100,7 @@ enum class Call : std::uint32_t {
   kControlEpoll,  // fd, a: EPOLL_CTL_..., data: EpollItem
   kTakeEvents,    // fd, a: how many at most -> data: EpollItem[]
   // Devices.
-  kOpenDevice,       // fd, a: Device -> ENOENT
+  kOpenDevice,       // fd, a: HostDevice -> ENOENT
   kPulseParameters,  // fd, data: pps_kparams to be, or none -> value: what it can (PPS_GETCAP),
                      // data: pps_kparams
   kFetchPulse,       // fd -> data: pps_kinfo; the descriptor is ready for reading at the next pulse
@@ -124,7 +124,7 @@ enum class SocketOption : std::int64_t {
   kLoopGroups,      // IP_MULTICAST_LOOP
 };
 
-enum class Device : std::int64_t {
+enum class HostDevice : std::int64_t {
   kCard,    // the network card's clock, /dev/ptp0
   kPulses,  // the line with a pulse per second, /dev/pps0
 };

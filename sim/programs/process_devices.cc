@@ -12,7 +12,7 @@
 namespace simbench::sim {
 
 using shim::Call;
-using shim::Device;
+using shim::HostDevice;
 
 bool Process::is_about_devices(Call call) {
   return call >= Call::kOpenDevice && call <= Call::kTakeStamps;
@@ -20,8 +20,8 @@ bool Process::is_about_devices(Call call) {
 
 Process::Answer Process::open_device(int fd, std::int64_t which) {
   if (open_.size() >= kMostOpen) return {.error = EMFILE};
-  const auto device = static_cast<Device>(which);
-  if (device != Device::kCard && device != Device::kPulses) return {.error = ENOENT};
+  const auto device = static_cast<HostDevice>(which);
+  if (device != HostDevice::kCard && device != HostDevice::kPulses) return {.error = ENOENT};
   const std::shared_ptr<DeviceFile> file = around_.pulses.open(device);
   if (file == nullptr) return {.error = ENOENT};
   file->on_event = [wake = around_.wake, object = std::weak_ptr(open(fd, file))] {
@@ -37,7 +37,7 @@ Process::Answer Process::of_device(const ChildRequest& request) {
   DeviceFile* const file = object != nullptr ? object->device() : nullptr;
   const bool is_of_line =
       request.head.call == Call::kPulseParameters || request.head.call == Call::kFetchPulse;
-  const Device device = is_of_line ? Device::kPulses : Device::kCard;
+  const HostDevice device = is_of_line ? HostDevice::kPulses : HostDevice::kCard;
   if (file == nullptr || file->device != device) {
     throw BadRequest("used a device that it never opened");
   }

@@ -11,7 +11,7 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kStampNoise("host: network card's stamps of pulses");
-constexpr SteadyTime kNever = SteadyTime::max();
+constexpr SteadyTime kNoEnd = SteadyTime::max();
 
 // As the kernel adds them: the nanoseconds of a program's offset may be any.
 pps_ktime with_offset(std::int64_t stamp_ns, const pps_ktime& offset) {
@@ -37,7 +37,7 @@ PulseDevices::PulseDevices(SimHost& host) : host_(host), line_(host.pulse_line(P
 Task<void> PulseDevices::run() {
   if (line_ == nullptr) co_return;
   for (;;) {
-    const std::optional<SimPulseInput::Pulse> pulse = co_await line_->next_pulse(kNever);
+    const std::optional<SimPulseInput::Pulse> pulse = co_await line_->next_pulse(kNoEnd);
     if (!pulse) continue;
     assert_pulse(*pulse);
     if (does_stamp_) stamp_by_card(*pulse);
@@ -50,7 +50,7 @@ void PulseDevices::assert_pulse(const SimPulseInput::Pulse& pulse) {
   last_.assert_tu =
       with_offset(epoch_ns(pulse.stamp.system), shifts ? parameters_.assert_off_tu : pps_ktime{});
   ++last_.assert_sequence;
-  tell(shim::Device::kPulses);
+  tell(shim::HostDevice::kPulses);
 }
 
 void PulseDevices::stamp_by_card(const SimPulseInput::Pulse& pulse) {
@@ -58,10 +58,10 @@ void PulseDevices::stamp_by_card(const SimPulseInput::Pulse& pulse) {
                      static_cast<std::uint64_t>(pulse.number));
   if (stamps_.size() == kMostStamps) stamps_.pop_front();
   stamps_.push_back(nanoseconds_of(host_.nic()->stamp(pulse.at, noise)) + kEpochNs);
-  tell(shim::Device::kCard);
+  tell(shim::HostDevice::kCard);
 }
 
-void PulseDevices::tell(shim::Device device) {
+void PulseDevices::tell(shim::HostDevice device) {
   std::erase_if(files_, [](const auto& each) { return each.expired(); });
   for (const auto& each : std::vector(files_)) {
     const std::shared_ptr<DeviceFile> file = each.lock();
@@ -69,8 +69,8 @@ void PulseDevices::tell(shim::Device device) {
   }
 }
 
-std::shared_ptr<DeviceFile> PulseDevices::open(shim::Device device) {
-  const bool is_there = device == shim::Device::kCard ? host_.nic() != nullptr : has_line();
+std::shared_ptr<DeviceFile> PulseDevices::open(shim::HostDevice device) {
+  const bool is_there = device == shim::HostDevice::kCard ? host_.nic() != nullptr : has_line();
   if (!is_there) return nullptr;
   auto file = std::make_shared<DeviceFile>();
   file->devices = this;
@@ -81,7 +81,7 @@ std::shared_ptr<DeviceFile> PulseDevices::open(shim::Device device) {
 }
 
 bool PulseDevices::is_ready(const DeviceFile& file) const {
-  if (file.device == shim::Device::kCard) return !stamps_.empty();
+  if (file.device == shim::HostDevice::kCard) return !stamps_.empty();
   return file.fetched != last_.assert_sequence;
 }
 

@@ -18,7 +18,7 @@
 //
 //   PulseDevices pulses(host);
 //   boost::asio::co_spawn(context, pulses.run(), boost::asio::detached);
-//   const std::shared_ptr<DeviceFile> file = pulses.open(shim::Device::kPulses);
+//   const std::shared_ptr<DeviceFile> file = pulses.open(shim::HostDevice::kPulses);
 //   file->on_event = [] { print("a pulse"); };
 //   const pps_kinfo last = pulses.fetch(*file);
 #pragma once
@@ -46,7 +46,7 @@ struct DeviceFile {
   bool is_ready() const;
 
   const PulseDevices* devices = nullptr;
-  shim::Device device = shim::Device::kCard;
+  shim::HostDevice device = shim::HostDevice::kCard;
   std::function<void()> on_event = [] {};  // it may be ready
   std::uint32_t fetched = 0;               // which pulse of the line was the last one then
 };
@@ -69,7 +69,7 @@ class PulseDevices {
   Task<void> run();
 
   // Null: the host has no such device.
-  std::shared_ptr<DeviceFile> open(shim::Device device);
+  std::shared_ptr<DeviceFile> open(shim::HostDevice device);
   bool is_ready(const DeviceFile& file) const;
 
   const pps_kparams& parameters() const { return parameters_; }
@@ -87,7 +87,7 @@ class PulseDevices {
  private:
   void assert_pulse(const SimPulseInput::Pulse& pulse);
   void stamp_by_card(const SimPulseInput::Pulse& pulse);
-  void tell(shim::Device device);
+  void tell(shim::HostDevice device);
 
   SimHost& host_;
   SimPulseInput* line_;

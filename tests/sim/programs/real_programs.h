@@ -45,9 +45,8 @@ inline std::string missing(const std::string& program) {
   }
 }
 
-#define SIMBENCH_SKIP_WITHOUT(program)                                         \
-  if (const std::string why = ::simbench::sim::missing(program); !why.empty()) \
-  GTEST_SKIP() << why
+#define SIMBENCH_SKIP_WITHOUT(program) \
+  if (const std::string why = ::simbench::sim::missing(program); !why.empty()) GTEST_SKIP() << why
 
 // How a slave's clock did, once it was within a bound for good.
 struct Course {
@@ -173,8 +172,8 @@ class RealPrograms : public testing::Test {
     return content(folder_ + "/programs/seed1/host" + std::to_string(host) + "/" + name);
   }
 
-  std::string folder_ = testing::TempDir() + "/real" +
-                        testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::string folder_ =
+      testing::TempDir() + "/real" + testing::UnitTest::GetInstance()->current_test_info()->name();
 
  private:
   static Course course_of(const std::vector<double>& errors_s, double bound_s) {

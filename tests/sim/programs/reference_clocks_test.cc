@@ -32,9 +32,9 @@ std::string chrony_conf(const std::string& text) {
 // What 6host_star says of the lines: a stamp is 5 us and an exponential 5 us late.
 constexpr double kLatencyUs = 5;
 constexpr double kExponentialUs = 5;
-// chronyd and ntpd take the mean of those 60 % of a poll's samples that lie nearest to its median:
-// the exponential between its quantiles of 20 and 80 %, which is 0.761 of its mean. So late are
-// their clocks. 16 samples leave an error of about a quarter of the exponential's deviation.
+// chronyd takes the mean of those 60 % of a poll's samples that lie nearest to the median: the
+// exponential between its quantiles of 20 and 80 %, which is 0.761 of its mean. Its clock is as
+// late. 16 samples leave an error of about a quarter of the exponential's deviation.
 constexpr double kMeanUs = -(kLatencyUs + 0.761 * kExponentialUs);
 constexpr double kSampleUs = kExponentialUs / 4;
 
@@ -192,9 +192,10 @@ TEST_F(ReferenceClocks, NtpdTakesPulsesAndTheirSecondsFromSharedMemory) {
 }
 
 // The card stamps the pulse itself: an error of 50 ns of the receiver's, 10 ns of the stamp's noise
-// and 8 ns / sqrt(12) of its resolution, 51 ns together. Of white noise a PI servo of linuxptp's
-// constants, 0.7 and 0.3 s^-1, makes 1.05 of it in its clock (X = 1.112 W of its two recursions);
-// phc2sys' follows that a second later, by readings of the card as noisy as its stamps.
+// and 8 ns / sqrt(12) of its resolution, 51 ns together. A PI servo with linuxptp's constants, 0.7
+// and 0.3 s^-1, turns white noise into 1.05 times as much of its clock: the variance X of x' = -w -
+// d, d' = d + 0.3 (x + w) is 1.112 that of w. That of phc2sys follows the card a second later, by
+// readings as noisy as its stamps.
 TEST_F(ReferenceClocks, Ts2phcSetsTheCardByPulsesAndPhc2sysTheClockByTheCard) {
   SIMBENCH_SKIP_WITHOUT("ts2phc");
   const std::vector<Command> both{
