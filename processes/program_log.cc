@@ -42,8 +42,8 @@ std::string ProgramLog::last_line() const {
   std::istringstream lines(end);
   std::string last;
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t size = line.find_last_not_of(" \t\r");
-    if (size != std::string::npos) last = line.substr(0, size + 1);
+    const std::size_t letter = line.find_last_not_of(" \t\r");
+    if (letter != std::string::npos) last = line.substr(0, letter + 1);
   }
   return last;
 }

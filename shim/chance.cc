@@ -11,7 +11,6 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "shim/card.h"
 #include "shim/link.h"
 #include "shim/local.h"
 

@@ -67,8 +67,7 @@ void write_descriptors(char* room, std::size_t size) {
   room[0] = '\0';
   std::size_t used = 0;
   for (int fd = 0; fd < kMostDescriptors; ++fd) {
-    if (!is_of_the_world(kinds[fd]) && kinds[fd] != Kind::kNetlink && kinds[fd] != Kind::kChance &&
-        kinds[fd] != Kind::kCard) {
+    if (!is_of_the_world(kinds[fd]) && kinds[fd] != Kind::kNetlink && kinds[fd] != Kind::kChance) {
       continue;
     }
     const long flags = machine_call(SYS_fcntl, fd, F_GETFD);

@@ -23,8 +23,8 @@
 #include <initializer_list>
 
 #include "shim/begin.h"
-#include "shim/card.h"
 #include "shim/chance.h"
+#include "shim/devices.h"
 #include "shim/link.h"
 #include "shim/local.h"
 #include "shim/paths.h"
@@ -64,6 +64,7 @@ void show_times(struct stat& status) {
 }
 
 int stat_at(int folder, const char* path, struct stat* status, int flags) {
+  if (is_device(path)) return describe_device(path, *status);
   const OwnPath own(path);
   const long result = machine_call(SYS_newfstatat, folder, own.text(), status, flags);
   if (result == 0 && is_simulated()) show_times(*status);
@@ -72,7 +73,7 @@ int stat_at(int folder, const char* path, struct stat* status, int flags) {
 
 int open_path(int folder, const char* path, int flags, mode_t mode) {
   if (is_chance(path)) return open_descriptor(Kind::kChance, false, (flags & O_CLOEXEC) != 0);
-  if (is_card(path)) return open_card(path, flags);
+  if (is_device(path)) return open_device(path, flags);
   const OwnPath own(path, (flags & O_CREAT) != 0 ? Use::kCreates : Use::kReads);
   const int fd = static_cast<int>(machine_call(SYS_openat, folder, own.text(), flags, mode));
   if (fd >= 0 && is_simulated()) {
@@ -189,6 +190,7 @@ SIMBENCH_CALL int fstatat(int folder, const char* path, struct stat* status, int
   return stat_at(folder, path, status, flags);
 }
 SIMBENCH_CALL int fstat(int fd, struct stat* status) {
+  if (is_simulated() && describe_device(fd, *status)) return 0;
   const long result = machine_call(SYS_fstat, fd, status);
   if (result == 0 && is_simulated()) show_times(*status);
   return static_cast<int>(result);
@@ -216,6 +218,7 @@ SIMBENCH_CALL int __fxstat64(int, int, struct stat*) __attribute__((alias("__fxs
 
 SIMBENCH_CALL int statx(int folder, const char* path, int flags, unsigned int mask,
                         struct statx* status) {
+  if (is_device(path)) return describe_device(path, *status);
   const OwnPath own(path);
   const long result = machine_call(SYS_statx, folder, own.text(), flags, mask, status);
   if (result < 0 || !is_simulated()) return static_cast<int>(result);
@@ -234,12 +237,15 @@ SIMBENCH_CALL int statx(int folder, const char* path, int flags, unsigned int ma
 // Calls with one path, which do on the program's own what they say.
 
 SIMBENCH_CALL int access(const char* path, int mode) {
+  struct stat status {};
+  if (is_device(path)) return describe_device(path, status);
   return static_cast<int>(machine_call(SYS_faccessat, AT_FDCWD, OwnPath(path).text(), mode));
 }
 SIMBENCH_CALL int euidaccess(const char* path, int mode) { return access(path, mode); }
 SIMBENCH_CALL int eaccess(const char* path, int mode) { return access(path, mode); }
 SIMBENCH_CALL int faccessat(int folder, const char* path, int mode, int flags) {
   if (!is_simulated()) return SIMBENCH_REAL(faccessat)(folder, path, mode, flags);
+  if (is_device(path)) return access(path, mode);
   return static_cast<int>(machine_call(SYS_faccessat, folder, OwnPath(path).text(), mode));
 }
 SIMBENCH_CALL int unlink(const char* path) {

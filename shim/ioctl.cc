@@ -1,4 +1,4 @@
-// ioctl(): of the network's interfaces, of the card's clock, and of the world's sockets.
+// ioctl(): of the network's interfaces, of devices, and of the world's sockets.
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/sockios.h>
@@ -10,6 +10,7 @@
 #include "shim/card.h"
 #include "shim/interfaces.h"
 #include "shim/link.h"
+#include "shim/pulses.h"
 
 namespace simbench::shim {
 namespace {
@@ -26,6 +27,11 @@ int count_input(int fd, int& count) {
   return 0;
 }
 
+// Requests that descriptors of any kind have.
+bool is_of_any(unsigned long what) {
+  return what == FIOCLEX || what == FIONCLEX || what == FIONBIO || what == FIOASYNC;
+}
+
 }  // namespace
 
 SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
@@ -40,7 +46,8 @@ SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
   }
   if (is_about_interfaces(what)) return interface_ioctl(what, argument);
   const Kind kind = kind_of(fd);
-  if (kind == Kind::kCard) return card_ioctl(what, argument);
+  if (kind == Kind::kCard && !is_of_any(what)) return card_ioctl(fd, what, argument);
+  if (kind == Kind::kPulses && !is_of_any(what)) return pulse_ioctl(fd, what, argument);
   if ((kind == Kind::kSocket || kind == Kind::kStream) && what == FIONREAD) {
     return count_input(fd, *static_cast<int*>(argument));
   }

@@ -125,6 +125,7 @@ enum class Kind : std::uint8_t {
   kNetlink,
   kLocal,
   kCard,
+  kPulses,
   kStream,
   kOwnTimer
 };
@@ -132,7 +133,7 @@ enum class Kind : std::uint8_t {
 // Whether the world says when it is ready; of others, the kernel does. A set of epoll() has both.
 constexpr bool is_of_the_world(Kind kind) {
   return kind == Kind::kSocket || kind == Kind::kStream || kind == Kind::kTimer ||
-         kind == Kind::kEpoll;
+         kind == Kind::kEpoll || kind == Kind::kCard || kind == Kind::kPulses;
 }
 
 inline constexpr int kMostDescriptors = 1024;

@@ -5,7 +5,8 @@
 // waits for its reply; time stands still until a thread asks for something that takes time. The
 // world replies to one thread at a time and then waits for what that asks next, so that one runs
 // at a time. Both ends are one machine: integers are in its byte order, and struct timex is the
-// kernel's.
+// kernel's, as are struct pps_kparams and
+// pps_kinfo.
 //
 // A new thread or process is announced (kNewThread, kNewProcess) with the world's end of its link,
 // and is stopped at its first request, kHello, until its turn has come. A process has a copy of
@@ -99,6 +100,16 @@ enum class Call : std::uint32_t {
   kOpenEpoll,     // fd
   kControlEpoll,  // fd, a: EPOLL_CTL_..., data: EpollItem
   kTakeEvents,    // fd, a: how many at most -> data: EpollItem[]
+  // Devices.
+  kOpenDevice,       // fd, a: HostDevice -> ENOENT
+  kPulseParameters,  // fd, data: pps_kparams to be, or none -> value: what it can (PPS_GETCAP),
+                     // data: pps_kparams
+  kFetchPulse,       // fd -> data: pps_kinfo; the descriptor is ready for reading at the next pulse
+  kPin,          // fd, a: ptp_pin_function to be, -1: as it is, b: the channel -> value: what it
+                 // is; EINVAL, EOPNOTSUPP
+  kStampPulses,  // fd, a: 1: the card stamps them from now on, 0: it does not -> EBUSY: its pin
+                 // is not for that
+  kTakeStamps,   // fd, a: how many at most -> data: int64[]; EAGAIN
 };
 
 // When a wait ends without anything being ready.
@@ -112,6 +123,11 @@ enum class SocketOption : std::int64_t {
   kUrgentErrors,    // SO_SELECT_ERR_QUEUE
   kAllGroups,       // IP_MULTICAST_ALL
   kLoopGroups,      // IP_MULTICAST_LOOP
+};
+
+enum class HostDevice : std::int64_t {
+  kCard,    // the network card's clock, /dev/ptp0
+  kPulses,  // the line with a pulse per second, /dev/pps0
 };
 
 enum StampKind : unsigned {
@@ -158,6 +174,7 @@ struct Identity {
   std::uint32_t hosts = 0;
   std::uint32_t has_card_clock = 0;  // 0 or 1
   std::int32_t most_card_rate = 0;   // ppb, what the card's driver states
+  std::uint32_t has_pulse_line = 0;  // 0 or 1
   std::uint32_t only_clock = 0;      // 0 or 1: sockets, waits and chance are the machine's
 };
 

@@ -7,6 +7,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "shim/card.h"
 #include "shim/chance.h"
 #include "shim/link.h"
 #include "shim/local.h"
@@ -25,7 +26,10 @@ SIMBENCH_CALL ssize_t read(int fd, void* data, std::size_t size) {
     case Kind::kTimer:
       return read_timer(fd, data, size);
     case Kind::kEpoll:
+    case Kind::kPulses:
       return refuse(EINVAL);
+    case Kind::kCard:
+      return read_card(fd, data, size);
     case Kind::kLocal:
       return local_read(fd, data, size);
     default:
@@ -45,7 +49,9 @@ SIMBENCH_CALL ssize_t write(int fd, const void* data, std::size_t size) {
   if (is_socket(fd) || is_stream(fd)) return send(fd, data, size, 0);
   if (is_local(fd)) return local_write(fd, data, size);
   const Kind kind = kind_of(fd);
-  if (kind == Kind::kTimer || kind == Kind::kEpoll) return refuse(EINVAL);
+  const bool is_read_only =
+      kind == Kind::kTimer || kind == Kind::kEpoll || kind == Kind::kCard || kind == Kind::kPulses;
+  if (is_read_only) return refuse(EINVAL);
   return machine_call(SYS_write, fd, data, size);
 }
 

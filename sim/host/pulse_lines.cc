@@ -60,12 +60,21 @@ SimPulseInput::SimPulseInput(SimHost& host, const PulseSchedule& source, std::st
       changed_(host.world().context, host.name(std::string("next pulse, ").append(name))) {}
 
 Task<std::optional<PulseStamp>> SimPulseInput::next(SteadyTime deadline) {
+  const std::optional<Pulse> pulse = co_await next_pulse(deadline);
+  if (!pulse) co_return std::nullopt;
+  co_return pulse->stamp;
+}
+
+Task<std::optional<SimPulseInput::Pulse>> SimPulseInput::next_pulse(SteadyTime deadline) {
   SIMBENCH_ASSERT(!changed_.waiting(), "one wait at a time on a pulse line");
   for (;;) {
     const std::optional<TrueTime> interrupt = next_interrupt();
     if (interrupt && *interrupt <= host_.true_now()) {
       last_interrupt_ = *interrupt;
-      co_return stamp((*number_)++, *interrupt);
+      const std::int64_t number = (*number_)++;
+      co_return Pulse{.number = number,
+                      .at = source_.pulse(number).value(),
+                      .stamp = stamp(number, *interrupt)};
     }
     if (host_.is_past(deadline)) co_return std::nullopt;
     std::optional<TrueTime> until = host_.next_look(deadline);

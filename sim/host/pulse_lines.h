@@ -102,11 +102,19 @@ class SimPulseInput final : public PulseInput {
 
   Task<std::optional<PulseStamp>> next(SteadyTime deadline) override;
 
+  // As next(), with what no algorithm is told.
+  struct Pulse {
+    std::int64_t number = 0;  // the source's
+    TrueTime at;              // when it reached the host
+    PulseStamp stamp{};
+  };
+  Task<std::optional<Pulse>> next_pulse(SteadyTime deadline);
+
   // The source has other pulses than before.
   void source_changed() { changed_.notify(); }
 
  private:
-  // When the next pulse that next() has not returned is stamped; sets number_ to its number.
+  // When the next pulse that no call has returned is stamped; sets number_ to its number.
   std::optional<TrueTime> next_interrupt();
   PulseStamp stamp(std::int64_t number, TrueTime interrupt) const;
 

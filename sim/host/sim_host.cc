@@ -55,7 +55,9 @@ SimHost::~SimHost() { system_clock_.observe(nullptr); }
 
 HardwareClock* SimHost::hardware_clock() { return nic_.get(); }
 
-PulseInput* SimHost::pulse_input(PulseLine line) {
+PulseInput* SimHost::pulse_input(PulseLine line) { return pulse_line(line); }
+
+SimPulseInput* SimHost::pulse_line(PulseLine line) {
   const bool is_pps = line == PulseLine::kPps;
   const scenarios::PulseLines& lines = world_.hosts.pulse_lines;
   if (!(is_pps ? lines.pps : lines.trigger)) return nullptr;

@@ -142,6 +142,8 @@ class SimHost final : public Host {
   // The feed if a program has opened it.
   SimFrameFeed* opened_frame_feed() const { return frame_feed_.get(); }
 
+  // As pulse_input().
+  SimPulseInput* pulse_line(PulseLine line);
   // The trigger line has pulses from now on.
   void trigger_started();
 

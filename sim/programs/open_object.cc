@@ -48,6 +48,7 @@ int readiness(OpenObject& object) {
   if (const UdpSocket* socket = object.socket()) return readiness_of(*socket);
   if (const StreamSocket* stream = object.stream()) return HostStreams::readiness(*stream);
   if (ProcessTimer* timer = object.timer()) return timer->expirations() > 0 ? POLLIN : 0;
+  if (const DeviceFile* file = object.device()) return file->is_ready() ? POLLIN : 0;
   return object.set()->is_ready() ? POLLIN : 0;
 }
 

@@ -1,5 +1,5 @@
-// What a descriptor of a simulated program stands for: a socket, a timer, a set of epoll(). Copies
-// of the descriptor share it, in the program and in the processes that it forks.
+// What a descriptor of a simulated program stands for: a socket, a timer, a set of epoll(), a
+// device. Copies of the descriptor share it, in the program and in the processes that it forks.
 //
 // changed() is called by whoever makes it ready: sets of epoll() that watch it are told
 // (sim/programs/epoll_set.h). Timers change by themselves: they are looked at.
@@ -17,6 +17,7 @@
 #include "sim/programs/host_network.h"
 #include "sim/programs/host_streams.h"
 #include "sim/programs/process_timers.h"
+#include "sim/programs/pulse_devices.h"
 
 namespace simbench::sim {
 
@@ -25,7 +26,7 @@ class EpollSet;
 class OpenObject {
  public:
   using What = std::variant<UdpSocket, std::shared_ptr<StreamSocket>, ProcessTimer,
-                            std::shared_ptr<EpollSet>>;
+                            std::shared_ptr<EpollSet>, std::shared_ptr<DeviceFile>>;
 
   explicit OpenObject(What what);
   ~OpenObject();
@@ -42,6 +43,10 @@ class OpenObject {
   ProcessTimer* timer() { return std::get_if<ProcessTimer>(&what_); }
   EpollSet* set() {
     const auto* found = std::get_if<std::shared_ptr<EpollSet>>(&what_);
+    return found != nullptr ? found->get() : nullptr;
+  }
+  DeviceFile* device() {
+    const auto* found = std::get_if<std::shared_ptr<DeviceFile>>(&what_);
     return found != nullptr ? found->get() : nullptr;
   }
 

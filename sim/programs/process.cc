@@ -95,6 +95,7 @@ void Process::count_request() {
 
 Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest request) {
   if (is_of_stream(request)) co_return co_await of_stream(std::move(request));
+  if (is_about_devices(request.head.call)) co_return of_device(request);
   switch (request.head.call) {
     case Call::kReadClock:
       co_return co_await read_clock(request.head.a, request.head.b != 0);
@@ -173,7 +174,8 @@ shim::Identity Process::identity(const ProgramThread& thread) const {
           .most_card_rate =
               around_.host.nic() != nullptr
                   ? static_cast<std::int32_t>(std::lround(around_.host.nic()->max_frequency_ppb()))
-                  : 0};
+                  : 0,
+          .has_pulse_line = around_.pulses.has_line() ? 1U : 0U};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {

@@ -47,6 +47,7 @@
 #include "sim/programs/kernel_clock.h"
 #include "sim/programs/open_object.h"
 #include "sim/programs/process_timers.h"
+#include "sim/programs/pulse_devices.h"
 
 namespace simbench::sim {
 
@@ -73,6 +74,7 @@ class Process {
     HostNetwork& network;
     KernelClock& kernel;
     CardClock& card;
+    PulseDevices& pulses;
     HostProcesses& processes;
     RandomStream& chance;
     std::function<void()> wake;  // the program's threads look again
@@ -157,6 +159,11 @@ class Process {
   Answer of_timer(const ChildRequest& request);
   Answer of_signal_timer(const ChildRequest& request);
   Answer take_expirations();
+  static bool is_about_devices(shim::Call call);
+  Answer of_device(const ChildRequest& request);
+  Answer open_device(int fd, std::int64_t which);
+  Answer of_card(const DeviceFile& file, const ChildRequest& request);
+
   Answer open_set(int fd);
   Answer control_set(const ChildRequest& request);
   Answer take_events(const ChildRequest& request);

@@ -66,8 +66,8 @@ Program::~Program() {
 }
 
 Process::Surroundings Program::for_processes() {
-  return {around_.host, around_.network,           around_.kernel, around_.card, around_.processes,
-          chance_,      [this] { wake_threads(); }};
+  return {around_.host,   around_.network,   around_.kernel, around_.card,
+          around_.pulses, around_.processes, chance_,        [this] { wake_threads(); }};
 }
 
 ProgramThread& Program::add_thread(Process& process, std::int32_t number,

@@ -41,6 +41,7 @@
 #include "sim/programs/kernel_clock.h"
 #include "sim/programs/process.h"
 #include "sim/programs/program_thread.h"
+#include "sim/programs/pulse_devices.h"
 
 namespace simbench::sim {
 
@@ -54,6 +55,7 @@ class Program {
     HostNetwork& network;
     KernelClock& kernel;
     CardClock& card;
+    PulseDevices& pulses;
     HostProcesses& processes;
   };
 

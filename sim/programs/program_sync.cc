@@ -51,6 +51,7 @@ class RunningPrograms {
         network_(host, hosts),
         kernel_(host),
         card_(host),
+        pulses_(host),
         endings_(host, programs),
         told_(std::move(told)) {}
   RunningPrograms(const RunningPrograms&) = delete;
@@ -78,8 +79,8 @@ class RunningPrograms {
         .run = std::move(run)};
     if (settings.patience) child.patience = *settings.patience;
     logs_.push_back(kept.empty() ? "" : fmt::format("{}/{}", kept, child.log_name));
-    programs_.emplace_back(Program::Surroundings{host_, network_, kernel_, card_, processes_},
-                           child);
+    programs_.emplace_back(
+        Program::Surroundings{host_, network_, kernel_, card_, pulses_, processes_}, child);
   }
 
   // `needed`: how long the programs take to synchronise the host. `duration`: nothing, for ever.
@@ -92,6 +93,7 @@ class RunningPrograms {
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
+    tasks.push_back(pulses_.run());
     for (std::size_t i = 0; i < programs_.size(); ++i) tasks.push_back(serve(i));
     if (host_.id() != kMaster) tasks.push_back(watch_clock(needed));
     if (duration) tasks.push_back(stop_after(*duration));
@@ -135,6 +137,7 @@ class RunningPrograms {
   HostNetwork network_;
   KernelClock kernel_;
   CardClock card_;
+  PulseDevices pulses_;
   HostProcesses processes_;
   std::deque<Program> programs_;
   std::vector<std::string> logs_;  // by program

@@ -63,7 +63,10 @@ class ProcessTest : public testing::Test {
     Heard heard;
     {
       static const scenarios::Scenario kStar =
-          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}});
+          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"},
+                                                  {"/cameras/count", "3"},
+                                                  {"/hosts/nic/hardware_stamps", "true"},
+                                                  {"/hosts/pulse_lines/pps", "true"}});
       ServiceWorld world(kStar);
       world.spawn(run(world.host(1), ends[0], heard));
       world.run_until(seconds);
@@ -82,11 +85,13 @@ class ProcessTest : public testing::Test {
     HostNetwork network(host, 3);
     KernelClock kernel(host);
     CardClock card(host);
+    PulseDevices pulses(host);
     HostProcesses processes;
-    Program program({host, network, kernel, card, processes},
+    Program program({host, network, kernel, card, pulses, processes},
                     {.command = {"program"}, .link = link});
     std::vector<Task<void>> tasks;
     tasks.push_back(kernel.run());
+    tasks.push_back(pulses.run());
     tasks.push_back(network.stamp_departures());
     tasks.push_back(serve(program, heard));
     co_await join_all(std::move(tasks));
@@ -137,6 +142,8 @@ TEST_F(ProcessTest, WhatIsNoRequestEndsTheProgram) {
             "program: used a socket that it never opened");
   EXPECT_EQ(note(packet({.call = Call::kReadTimer, .fd = 7})),
             "program: used a timer that it never opened");
+  EXPECT_EQ(note(packet({.call = Call::kFetchPulse, .fd = 7})),
+            "program: used a device that it never opened");
   EXPECT_EQ(note(packet({.call = Call::kRandom, .a = -1})),
             "program: asked for too many random bytes");
   EXPECT_EQ(note(packet({.call = Call::kAdjustClock}, "short")), "program: too little data");
@@ -185,6 +192,8 @@ class Hostile {
   std::vector<Packet> packets(std::size_t count) {
     std::vector<Packet> result{packet({.call = Call::kOpenSocket, .fd = 3, .a = SOCK_DGRAM}),
                                packet({.call = Call::kOpenTimer, .fd = 4, .a = CLOCK_REALTIME}),
+                               packet({.call = Call::kOpenDevice, .fd = 5, .a = 0}),
+                               packet({.call = Call::kOpenDevice, .fd = 6, .a = 1}),
                                packet({.call = Call::kBind, .fd = 3},
                                       raw(shim::Address{.host = 0, .port = 9, .reserved = 0}))};
     while (result.size() < count) result.push_back(damaged(request()));
@@ -227,7 +236,7 @@ class Hostile {
   std::string interests() {
     std::string data;
     for (std::size_t i = below(one_in(20) ? 8192 : 4); i > 0; --i) {
-      data += raw(shim::Interest{.fd = static_cast<std::int32_t>(3 + below(3)),
+      data += raw(shim::Interest{.fd = static_cast<std::int32_t>(3 + below(5)),
                                  .events = small<std::int16_t>(),
                                  .ready = 0});
     }
@@ -245,6 +254,13 @@ class Hostile {
     setting.time.tv_usec = number();
     return raw(setting);
   }
+  std::string pulse_parameters() {
+    pps_kparams wanted{};
+    wanted.mode = one_in(3) ? small<int>() : PPS_CAPTUREASSERT | PPS_OFFSETASSERT;
+    wanted.assert_off_tu.sec = number();
+    wanted.assert_off_tu.nsec = small<std::int32_t>();
+    return raw(wanted);
+  }
   std::string data_of(Call call) {
     switch (call) {
       case Call::kAdjustClock:
@@ -254,6 +270,8 @@ class Hostile {
       case Call::kSetTimer:
       case Call::kSetSignalTimer:
         return raw(shim::TimerSetting{.left = number(), .interval = number()});
+      case Call::kPulseParameters:
+        return pulse_parameters();
       case Call::kBind:
       case Call::kConnect:
         return raw(address());
@@ -264,15 +282,21 @@ class Hostile {
     }
   }
   Packet request() {
-    // The last call, and one that is none. Notes end the program, so there are few.
+    // Those without threads and processes. Notes end the program, so there are few.
+    constexpr auto kFirst = static_cast<std::size_t>(Call::kTakeExpirations) + 2;
+    constexpr auto kDevices = static_cast<std::size_t>(Call::kOpenDevice);
+    constexpr auto kEnd = static_cast<std::size_t>(Call::kTakeStamps) + 2;  // and one that is none
     Call call{};
     do {
-      call = static_cast<Call>(below(static_cast<std::size_t>(Call::kTakeExpirations) + 2));
+      const std::size_t number = below(kFirst + kEnd - kDevices);
+      call = static_cast<Call>(number < kFirst ? number : kDevices + number - kFirst);
     } while (call == Call::kNote && !one_in(20));
     const bool is_known = !one_in(30);
     const bool is_timer = call >= Call::kOpenTimer && call <= Call::kQueryTimer;
     const bool is_signal = call >= Call::kSetSignalTimer && call <= Call::kDropSignalTimer;
-    const std::int32_t own = is_signal ? -1 : is_timer ? 4 : 3;
+    const bool is_card = call >= Call::kPin && call <= Call::kTakeStamps;
+    const bool is_line = call == Call::kPulseParameters || call == Call::kFetchPulse;
+    const std::int32_t own = is_signal ? -1 : is_timer ? 4 : is_card ? 5 : is_line ? 6 : 3;
     const Request head{.call = call,
                        .fd = is_known ? own : small<std::int32_t>(),
                        .a = one_in(2) ? static_cast<std::int64_t>(below(4)) : number(),
