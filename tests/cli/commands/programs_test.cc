@@ -199,6 +199,18 @@ TEST_F(FailedProgram, OneShotClientsHaveNotFailed) {
   EXPECT_FALSE(row["host_error_ms"]["median"].is_null());
 }
 
+// Its world begins two hours before the time that oscillators are drawn for.
+TEST_F(FailedProgram, MonotonicClocksAreNotNegative) {
+  pipeline("mine", {"steady"});
+  Json program = Json::parse(content("mine.json"))["host_sync"]["program"];
+  program["run_before_capture_s"] = 7200;
+  write("mine.json", program);
+  const ProgramResult result =
+      run_cameras({"--program", "mine=mine.json", "--seeds", "1", "--format", "json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(Json::parse(result.out)["rows"][1]["program_failures"], Json::array());
+}
+
 TEST_F(FailedProgram, OtherCommandsSayItToo) {
   const std::string mine = pipeline("mine", {"late"});
   const std::vector<std::string> world = {"--scenario", "9cam_3host_30fps_azure_kinect",
