@@ -1,8 +1,9 @@
 // What commands say of runs of real programs: at the start what is simulated, at the end by the
 // exit status whether programs failed.
 //
-//   print_note(programs_note(scenario, {"chrony", "mine"}, 4));
-//   const int status = status_of(results);
+//   print_note(programs_note(scenario, {"chrony", "mine"}, /*seeds=*/4));
+//   const evaluation::Results found = evaluation::evaluate(scenario, make_source, {}, nullptr);
+//   const int status = status_of(found);
 #pragma once
 
 #include <cstdint>

@@ -39,15 +39,17 @@ void ProgramEndings::add(ProgramEnd end, const EndPlace& place, bool clock_was_s
   if (failure_) return;
   if (end.status != 0) return fail(end, place);
   if (running_ > 0) return;
-  const std::string when =
-      fmt::format("host {}, at {}: {}", host_.id(), run_time_text(place.at), end.program);
   if (host_.id() == kMaster) {
-    notes_.push_back(when + ": ended with status 0; nobody serves the hosts from then on");
+    notes_.push_back(
+        fmt::format("host {}, at {}: {}: ended with status 0; nobody serves the hosts from then on",
+                    host_.id(), run_time_text(place.at), end.program));
   } else if (clock_was_set) {
-    host_.report_outcome({.slave = host_.id(),
-                          .synchronised = true,
-                          .passes = 0,
-                          .message = when + ": ended with status 0, the clock is set"});
+    host_.report_outcome(
+        {.slave = host_.id(),
+         .synchronised = true,
+         .passes = 0,
+         .message = fmt::format("host {}: {}: {} at {}, the clock is set", host_.id(), end.program,
+                                end.how, run_time_text(place.at))});
   } else {
     end.how = without_setting(end.how);
     fail(end, place);

@@ -176,7 +176,7 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
                  .pipelines = options.evaluation.pipelines});
   if (!predicted) return kInterrupted;
   print_result(text_with_prediction(*measured, *predicted, scenario, options));
-  return kOk;
+  return status_of(*measured);
 }
 
 // Empty for a format without an answer; nothing after an interruption.

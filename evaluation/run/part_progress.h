@@ -11,7 +11,8 @@
 //
 // Thread-safe. Costs nothing where nobody asks (Progress::on_part).
 //
-//   PartProgress parts(progress, part_plan({true, false}, /*seeds=*/2, /*threads=*/2));
+//   const Progress told([](std::uint64_t done, std::uint64_t total) { print(done, total); });
+//   PartProgress parts(told, part_plan({true, false}, /*seeds=*/2, /*threads=*/2));
 //   parts.begin(0);
 //   const ShareDone share_done = parts.share_of(0);
 //   share_done(0.5);

@@ -95,6 +95,8 @@ TEST(ProgramEndings, AOneShotClientThatHasSetTheClockIsDone) {
   EXPECT_THAT(host.failures, IsEmpty());
   ASSERT_THAT(host.outcomes, SizeIs(1));
   EXPECT_TRUE(host.outcomes.front().synchronised);
+  EXPECT_EQ(host.outcomes.front().message,
+            "host 3: client: exited with status 0 at 10.000213 s, the clock is set");
   EXPECT_THAT(endings.notes(), IsEmpty());
 }
 

@@ -5,8 +5,9 @@
 //   nothing      ends with status 0 after a while, and leaves the clock alone
 //   late         fails after 2.5 s
 //   tidy         fails, with a last line that is long, coloured and no UTF-8
-//   unlucky HOST sets the clock and goes on for ever; on host 2 it fails in about every second
-//   world wait         goes on for ever
+//   unlucky HOST sets the clock and goes on for ever; on host 2 it fails in some worlds
+//   steady       fails if a sleep until a time of the monotonic clock is refused or too long
+//   wait         goes on for ever
 #include <sys/random.h>
 #include <sys/timex.h>
 
@@ -64,6 +65,15 @@ int unlucky(const char* host) {
   return 4;
 }
 
+int steady() {
+  set();
+  const std::int64_t begin = promises::read_clock(CLOCK_MONOTONIC);
+  const timespec until{.tv_sec = begin / promises::kSecond + 1, .tv_nsec = 0};
+  const int refusal = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  const std::int64_t slept = promises::read_clock(CLOCK_MONOTONIC) - begin;
+  return begin > 0 && refusal == 0 && slept < 2 * promises::kSecond ? 0 : 6;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -73,6 +83,7 @@ int main(int count, char** words) {
   if (std::strcmp(what, "nothing") == 0) return nothing();
   if (std::strcmp(what, "late") == 0) return late();
   if (std::strcmp(what, "tidy") == 0) return tidy();
+  if (std::strcmp(what, "steady") == 0) return steady();
   if (std::strcmp(what, "unlucky") == 0 && count == 3) {
     if (const int status = unlucky(words[2]); status >= 0) return status;
   }

@@ -126,6 +126,29 @@ class ResultsTest(unittest.TestCase):
         self.assertEqual(axes.get_xscale(), "log")
 
 
+class FailedProgramTest(unittest.TestCase):
+    def test_its_row_has_failed_and_has_no_numbers(self):
+        with tempfile.TemporaryDirectory() as folder:
+            rig = os.path.join(folder, "rig.json")
+            programs = {"master": [["python3", "-c", "import time; time.sleep(1e6)"]],
+                        "slave": [["python3", "-c", "raise SystemExit(3)"]]}
+            with open(rig, "w", encoding="utf-8") as out:
+                json.dump({"schema_version": 1, "name": "rig", "summary": "A program that ends.",
+                           "base": "9cam_3host_30fps_azure_kinect", "timeline": {"frames": 30},
+                           "pipelines": [{"name": "mine", "host_sync": {"program": programs},
+                                          "device_time": "regression_30",
+                                          "gathering": "yoon2021"}]}, out)
+            result = simbench.run(rig, seeds=1)
+            clocks = simbench.clocks(rig, seeds=1, duration_s=310)
+        for row in (result.table.iloc[0], clocks.table.iloc[0]):
+            self.assertEqual(row["standing"], "failed")
+            self.assertIn("exited with status 3", row["failed"])
+        self.assertTrue(math.isnan(result.table.iloc[0]["amd_ms"]))
+        self.assertTrue(math.isnan(clocks.table.iloc[0]["max_te_ms"]))
+        self.assertEqual(len(result.data["rows"][0]["program_failures"]), 2)
+        self.assertIn("Every pipeline that a rig can run failed", result.answer)
+
+
 class FramesTest(unittest.TestCase):
     def test_frames_are_a_view_of_the_runs_memory(self):
         run = simbench.run("3cam_1host_30fps", seeds=1)

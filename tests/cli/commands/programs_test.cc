@@ -229,6 +229,18 @@ TEST_F(FailedProgram, OneShotClientsHaveNotFailed) {
   EXPECT_FALSE(row["host_error_ms"]["median"].is_null());
 }
 
+// Its world begins two hours before the time that oscillators are drawn for.
+TEST_F(FailedProgram, MonotonicClocksAreNotNegative) {
+  pipeline("mine", {"steady"});
+  Json program = Json::parse(content("mine.json"))["host_sync"]["program"];
+  program["run_before_capture_s"] = 7200;
+  write("mine.json", program);
+  const ProgramResult result =
+      run_cameras({"--program", "mine=mine.json", "--seeds", "1", "--format", "json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(Json::parse(result.out)["rows"][1]["program_failures"], Json::array());
+}
+
 TEST_F(FailedProgram, OtherCommandsSayItToo) {
   const std::string mine = pipeline("mine", {"late"});
   const std::vector<std::string> world = {"--scenario", "9cam_3host_30fps_azure_kinect",
@@ -256,6 +268,37 @@ TEST_F(FailedProgram, OtherCommandsSayItToo) {
   const ProgramResult clocks_run = clocks({"--program", mine, "--format", "json"});
   EXPECT_EQ(clocks_run.status, 5);
   EXPECT_EQ(Json::parse(clocks_run.out)["rows"][1]["standing"], "failed");
+}
+
+TEST_F(FailedProgram, ASweepHasNoValuesOfIt) {
+  pipeline("mine", {"late"});
+  Json own = Json::parse(content("mine.json"));
+  own.update({{"name", "mine"}, {"device_time", "regression_30"}, {"gathering", "yoon2021"}});
+  file("rig.json", Json{{"schema_version", 1},
+                        {"name", "rig"},
+                        {"summary", "A rig with a program that ends."},
+                        {"base", "9cam_3host_30fps_azure_kinect"},
+                        {"timeline", {{"frames", 30}}},
+                        {"pipelines", Json::array({own})}}
+                       .dump());
+  for (const bool of_clocks : {false, true}) {
+    std::vector<std::string> command = {"sweep",
+                                        "--scenario",
+                                        "rig.json",
+                                        "--sweep",
+                                        "/network/latency_fixed_ms=0.1,0.2",
+                                        "--seeds",
+                                        "2",
+                                        "-o",
+                                        of_clocks ? "clocks" : "captures"};
+    if (of_clocks) command.insert(command.end(), {"--clocks", "--duration-s", "310"});
+    const ProgramResult result = run(command);
+    EXPECT_EQ(result.status, 5) << result.err;
+    EXPECT_THAT(result.out, AllOf(HasSubstr("No pipeline that a rig can run has a value"),
+                                  HasSubstr("mine failed at 2 of 2 points: a program ended")));
+  }
+  EXPECT_THAT(content("captures/sweep.csv"), HasSubstr("0.1,mine,1,,,,"));
+  EXPECT_THAT(content("clocks/sweep.csv"), HasSubstr("\"host "));
 }
 
 TEST_F(FailedProgram, IsNotCompared) {
