@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -229,6 +230,21 @@ TEST_F(ReferenceClocks, ChronydTakesTheCardsStampsOfPulses) {
     EXPECT_LE(each.rms_us, 0.3);
     EXPECT_GT(each.rms_us, 0);
   }
+}
+
+TEST_F(ReferenceClocks, TheSamePulsesGiveTheSameBytes) {
+  SIMBENCH_SKIP_WITHOUT("ts2phc");
+  const std::vector<Command> both{{"ts2phc", "-m", "-q", "-l", "7", "-s", "generic", "-c", "eth0"},
+                                  own({"shm", "0", "120"})};
+  const scenarios::Scenario wired =
+      two_hosts({{"/hosts/nic/hardware_stamps", "true"}, {"/hosts/pulse_lines/pps", "true"}});
+  const std::vector<Course> first = run(settings(both, both), wired, 120);
+  const std::string said = logs();
+  std::filesystem::remove_all(folder_);
+  folder_ += "_of_another_name";
+  EXPECT_EQ(run(settings(both, both), wired, 120).at(0).rms_s, first.at(0).rms_s);
+  EXPECT_EQ(logs(), said);
+  EXPECT_THAT(said, HasSubstr("eth0 extts index 0 at "));
 }
 
 // Without a line ts2phc says which request failed.
