@@ -1,12 +1,16 @@
 // Folders: their names come in order, which is the machine's otherwise.
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <glob.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 
 #include "shim/link.h"
 #include "shim/paths.h"
+#include "shim/status.h"
 
 namespace simbench::shim {
 namespace {
@@ -39,6 +43,19 @@ void drop_listing(Listing& listing) {
   listing = {};
 }
 
+// As stat() has it; the machine's files keep their numbers.
+void number_entries(const Listing& listing) {
+  struct stat status {};
+  const int folder = dirfd(listing.folder);
+  const bool is_own = fstat(folder, &status) == 0 && status.st_dev == kOwnDevice;
+  for (std::size_t i = 0; i < listing.count; ++i) {
+    dirent& entry = listing.entries[i];
+    entry.d_off = static_cast<off_t>(i) + 1;
+    if (!is_own || fstatat(folder, entry.d_name, &status, AT_SYMLINK_NOFOLLOW) < 0) continue;
+    entry.d_ino = status.st_ino;
+  }
+}
+
 // Pages that are not used take no memory.
 bool read_all(Listing& listing) {
   void* memory = mmap(nullptr, kMostNames * sizeof(dirent), PROT_READ | PROT_WRITE,
@@ -51,6 +68,7 @@ bool read_all(Listing& listing) {
     memcpy(&listing.entries[listing.count++], entry, entry->d_reclen);
   }
   qsort(listing.entries, listing.count, sizeof(dirent), compare);
+  number_entries(listing);
   return true;
 }
 
@@ -106,6 +124,31 @@ SIMBENCH_CALL int closedir(DIR* folder) {
   if (Listing* listing = listing_of(folder)) drop_listing(*listing);
   return SIMBENCH_REAL(closedir)(folder);
 }
+
+namespace {
+
+void* open_for_glob(const char* path) { return opendir(path); }
+dirent* read_for_glob(void* folder) { return readdir(static_cast<DIR*>(folder)); }
+void close_for_glob(void* folder) { closedir(static_cast<DIR*>(folder)); }
+
+}  // namespace
+
+// libc's own would look past these calls.
+SIMBENCH_CALL int glob(const char* pattern, int flags, int (*on_error)(const char*, int),
+                       glob_t* found) {
+  if (is_simulated() && (flags & GLOB_ALTDIRFUNC) == 0) {
+    found->gl_opendir = open_for_glob;
+    found->gl_readdir = read_for_glob;
+    found->gl_closedir = close_for_glob;
+    found->gl_stat = stat;
+    found->gl_lstat = lstat;
+    flags |= GLOB_ALTDIRFUNC;
+  }
+  return SIMBENCH_REAL(glob)(pattern, flags, on_error, found);
+}
+
+SIMBENCH_CALL int glob64(const char*, int, int (*)(const char*, int), glob64_t*)
+    __attribute__((alias("glob")));
 
 SIMBENCH_CALL int scandir(const char* path, dirent*** names, int (*select)(const dirent*),
                           int (*order)(const dirent**, const dirent**)) {

@@ -4,9 +4,11 @@
 //   other absolute paths    the file of that name in the host's folder if it is there
 //                           (etc/ntp.conf), else the machine's
 //   /run, /var, /tmp, /dev/shm (and what is below): what is made there is in the host's folder,
-//                           with the folders that lead to it
+//                           with the folders that lead to it; these four list the host's files
+//   /proc, /sys             of the machine's only what the process is itself (shim/proc.h)
 //
-// The machine's files can be read as far as it is allowed; nothing of its is written.
+// The machine's files can be read as far as it is allowed; nothing of its is written. What it may
+// not read below /run, /var, /tmp and /dev/shm is not there.
 //
 //   const OwnPath path("/run/chrony/chronyd.pid", Use::kCreates);
 //   print(path.text());  // "/tmp/.../host1/run/chrony/chronyd.pid"

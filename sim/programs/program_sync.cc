@@ -11,6 +11,7 @@
 #include "algorithms/host_sync/join.h"
 #include "processes/placeholders.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/host_files.h"
 #include "sim/programs/program.h"
 
 namespace simbench::sim {
@@ -30,11 +31,22 @@ HostPlaces places_of(SimHost& host) {
 // The programs of one host.
 class RunningPrograms {
  public:
-  RunningPrograms(SimHost& host, std::size_t hosts)
-      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
+  RunningPrograms(SimHost& host, std::size_t hosts, const std::string& folder)
+      : host_(host),
+        hosts_(hosts),
+        folder_(folder),
+        network_(host, hosts),
+        kernel_(host),
+        card_(host),
+        files_(host, folder) {}
+  RunningPrograms(const RunningPrograms&) = delete;
+  RunningPrograms& operator=(const RunningPrograms&) = delete;
+  ~RunningPrograms() {
+    programs_.clear();
+    files_.stamp_all();
+  }
 
-  void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder) {
+  void start(const HostPrograms::Command& command, const ProgramSettings& settings) {
     const std::size_t number = programs_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -42,12 +54,12 @@ class RunningPrograms {
         .command = fill(command, places),
         .program = path == settings.paths.end() ? "" : path->second,
         .environment = fill(settings.programs.environment, places),
-        .folder = folder,
+        .folder = folder_,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim};
     if (settings.patience) child.patience = *settings.patience;
-    programs_.emplace_back(Program::Surroundings{host_, network_, kernel_, card_, processes_},
-                           child);
+    programs_.emplace_back(
+        Program::Surroundings{host_, network_, kernel_, card_, processes_, files_}, child);
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -83,10 +95,12 @@ class RunningPrograms {
 
   SimHost& host_;
   std::size_t hosts_;
+  std::string folder_;
   HostNetwork network_;
   KernelClock kernel_;
   CardClock card_;
   HostProcesses processes_;
+  HostFiles files_;
   std::deque<Program> programs_;
   bool has_failed_ = false;
 };
@@ -137,11 +151,8 @@ void ProgramSync::fail(Host& host, const std::string& ending) {
 
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
-  RunningPrograms programs(own, settings_.hosts);
-  const std::string folder = make_folder(own);
-  for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder);
-  }
+  RunningPrograms programs(own, settings_.hosts, make_folder(own));
+  for (const HostPrograms::Command& command : commands) programs.start(command, settings_);
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
   co_await programs.run(duration, [this, &host](const std::string& ending) { fail(host, ending); });

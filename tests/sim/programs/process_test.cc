@@ -83,7 +83,8 @@ class ProcessTest : public testing::Test {
     KernelClock kernel(host);
     CardClock card(host);
     HostProcesses processes;
-    Program program({host, network, kernel, card, processes},
+    HostFiles files(host, "/no/folder");
+    Program program({host, network, kernel, card, processes, files},
                     {.command = {"program"}, .link = link});
     std::vector<Task<void>> tasks;
     tasks.push_back(kernel.run());
