@@ -94,7 +94,7 @@ struct Server {
       if (frame) {
         std::this_thread::sleep_for(5ms);
         encoded.push(*frame);
-      } else {
+      } else if (!is_over) {
         ++found_nothing;
       }
     }

@@ -18,9 +18,6 @@
 namespace simbench::sim {
 namespace {
 
-const std::string kScripts = std::string(SIMBENCH_SOURCE_DIR) + "/tests/programs/";
-const std::string kOwn = std::string(SIMBENCH_PROGRAMS) + "/simbench_";
-
 // When something ended, ms, and what.
 using Said = std::pair<double, std::string>;
 
@@ -49,7 +46,7 @@ class Languages : public RealPrograms {
 
 TEST_F(Languages, ThreadsOfPythonWaitInTheWorldsTime) {
   SIMBENCH_SKIP_WITHOUT("python3");
-  const Command command{"python3", kScripts + "threads.py"};
+  const Command command{"python3", test_script("threads.py")};
   run_twice(settings({command}, {command}), two_hosts(), 60);
   expect_said("0_python3.log", {{250, "wait False"},
                                 {350, "wait True"},
@@ -63,7 +60,7 @@ TEST_F(Languages, ThreadsOfPythonWaitInTheWorldsTime) {
 
 TEST_F(Languages, TasksOfAsyncioAskAnotherHost) {
   SIMBENCH_SKIP_WITHOUT("python3");
-  const std::string script = kScripts + "tasks.py";
+  const std::string script = test_script("tasks.py");
   run_twice(settings({{"python3", script, "serve"}}, {{"python3", script, "ask", "host0"}}),
             two_hosts(), 60);
   expect_said("0_python3.log", {{0, "b'datagram'"},
@@ -79,7 +76,7 @@ TEST_F(Languages, TasksOfAsyncioAskAnotherHost) {
 
 TEST_F(Languages, ChildrenOfPythonEndInTheWorldsTime) {
   SIMBENCH_SKIP_WITHOUT("python3");
-  const Command command{"python3", kScripts + "children.py"};
+  const Command command{"python3", test_script("children.py")};
   run_twice(settings({command}, {command}), two_hosts(), 60);
   expect_said("0_python3.log", {{200, "4 b'out\\n' b'err\\n'"},
                                 {500, "patience is over"},
@@ -96,7 +93,7 @@ TEST_F(Languages, ChildrenOfPythonEndInTheWorldsTime) {
 
 TEST_F(Languages, NodeHasTimersSocketsThreadsAndChildren) {
   SIMBENCH_SKIP_WITHOUT("node");
-  const std::string script = kScripts + "workers.js";
+  const std::string script = test_script("workers.js");
   run_twice(settings({{"node", script, "serve"}}, {{"node", script, "ask", "{master}"}}),
             two_hosts(), 60);
   expect_said("0_node.log", {{0, "datagram"},
@@ -113,8 +110,8 @@ TEST_F(Languages, RustHasThreadsSocketsAndChildren) {
   const std::string compiler = std::filesystem::exists(own) ? own : "rustc";
   const ScratchFolder folder;
   const std::string program = folder / "threads";
-  const std::string compile =
-      fmt::format("{} -o {} {}threads.rs > {} 2>&1", compiler, program, kScripts, folder / "said");
+  const std::string compile = fmt::format("{} -o {} {}threads.rs > {} 2>&1", compiler, program,
+                                          test_script(""), folder / "said");
   if (std::system((compiler + " --version > /dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "rustc is not there";
   }
@@ -131,7 +128,7 @@ TEST_F(Languages, RustHasThreadsSocketsAndChildren) {
 // A way takes 0.1 ms and an exponential 0.05 ms, so that the mean of 200 round trips is 0.3 ms with
 // a deviation of 0.005 ms.
 TEST_F(Languages, AnAsioServerOfThreeThreadsAnswers) {
-  const std::string program = kOwn + "asio_echo";
+  const std::string program = test_program("asio_echo");
   run_twice(settings({{program, "serve"}}, {{program, "ask", "host0"}}), two_hosts(), 60);
   double round_trip_ms = 0;
   double vain_ms = 0;
@@ -147,7 +144,7 @@ TEST_F(Languages, AnAsioServerOfThreeThreadsAnswers) {
 // 300 frames at 50 Hz with a second between; three workers who wait for 100 ms at most find nothing
 // ten times in it. A frame arrives 5 ms of encoding and a way after its stamp.
 TEST_F(Languages, ACaptureServerPublishesWhatItsCameraStamped) {
-  const std::string program = kOwn + "capture_server";
+  const std::string program = test_program("capture_server");
   run_twice(settings({{program, "subscribe"}}, {{program, "publish", "{master}"}}), two_hosts(),
             60);
   EXPECT_EQ(file(1, "0_simbench_capture_server.log"), "sent 300 frames, found nothing 30 times\n");
