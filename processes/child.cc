@@ -23,6 +23,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -104,6 +105,29 @@ void forget_parent() {
   fail(plan.program, errno);
 }
 
+// Programs of a package start each other by their names.
+std::string search_path(const Child::Settings& settings) {
+  const std::string& program =
+      settings.program.empty() ? settings.command.front() : settings.program;
+  const std::string folder = std::filesystem::path(program).parent_path().string();
+  std::string path = "/usr/sbin:/usr/bin:/sbin:/bin";
+  for (const char* each : {"/usr/sbin", "/usr/bin", "/sbin", "/bin"}) {
+    if (folder == each) return path;
+  }
+  return folder.empty() ? path : folder + ":" + path;
+}
+
+std::vector<std::string> environment_of(const Child::Settings& settings) {
+  std::map<std::string, std::string> all = {
+      {"PATH", search_path(settings)}, {"TZ", "UTC0"}, {"LC_ALL", "C"}};
+  for (const auto& [name, value] : settings.environment) all[name] = value;
+  all["LD_PRELOAD"] = settings.shim;
+  all[shim::kLinkVariable] = std::to_string(kLink);
+  std::vector<std::string> environment;
+  for (const auto& [name, value] : all) environment.push_back(fmt::format("{}={}", name, value));
+  return environment;
+}
+
 }  // namespace
 
 Child::Child(const Settings& settings)
@@ -124,12 +148,7 @@ Child::Child(const Settings& settings)
 
 std::string Child::start(const Settings& settings, int& link) {
   std::vector<std::string> arguments = settings.command;
-  std::vector<std::string> environment = {
-      fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
-      "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "TZ=UTC0", "LC_ALL=C"};
-  for (const auto& [name, value] : settings.environment) {
-    environment.push_back(fmt::format("{}={}", name, value));
-  }
+  std::vector<std::string> environment = environment_of(settings);
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
   const std::string& program =

@@ -21,6 +21,7 @@ constexpr std::size_t kMostNames = 16'384;
 // The entries of an open folder, in order.
 struct Listing {
   DIR* folder = nullptr;
+  DIR* below = nullptr;  // the machine's folder over which it lies
   dirent* entries = nullptr;
   std::size_t count = 0;
   std::size_t next = 0;
@@ -40,6 +41,7 @@ int compare(const void* one, const void* other) {
 
 void drop_listing(Listing& listing) {
   if (listing.entries != nullptr) munmap(listing.entries, kMostNames * sizeof(dirent));
+  if (listing.below != nullptr) SIMBENCH_REAL(closedir)(listing.below);
   listing = {};
 }
 
@@ -56,17 +58,30 @@ void number_entries(const Listing& listing) {
   }
 }
 
+bool has_name(const Listing& listing, const char* name) {
+  for (std::size_t i = 0; i < listing.count; ++i) {
+    if (strcmp(listing.entries[i].d_name, name) == 0) return true;
+  }
+  return false;
+}
+
+void add_entries(Listing& listing, DIR* folder) {
+  const auto next = SIMBENCH_REAL(readdir);
+  while (const dirent* entry = next(folder)) {
+    if (listing.count == kMostNames) break;
+    if (folder == listing.below && has_name(listing, entry->d_name)) continue;
+    memcpy(&listing.entries[listing.count++], entry, entry->d_reclen);
+  }
+}
+
 // Pages that are not used take no memory.
 bool read_all(Listing& listing) {
   void* memory = mmap(nullptr, kMostNames * sizeof(dirent), PROT_READ | PROT_WRITE,
                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (memory == MAP_FAILED) return false;
   listing.entries = static_cast<dirent*>(memory);
-  const auto next = SIMBENCH_REAL(readdir);
-  while (const dirent* entry = next(listing.folder)) {
-    if (listing.count == kMostNames) break;
-    memcpy(&listing.entries[listing.count++], entry, entry->d_reclen);
-  }
+  add_entries(listing, listing.folder);
+  if (listing.below != nullptr) add_entries(listing, listing.below);
   qsort(listing.entries, listing.count, sizeof(dirent), compare);
   number_entries(listing);
   return true;
@@ -82,7 +97,11 @@ DIR* keep(DIR* folder) {
 }  // namespace
 
 SIMBENCH_CALL DIR* opendir(const char* path) {
-  return keep(SIMBENCH_REAL(opendir)(OwnPath(path).text()));
+  const OwnPath own(path);
+  DIR* folder = keep(SIMBENCH_REAL(opendir)(own.text()));
+  Listing* listing = folder != nullptr && own.below() != nullptr ? listing_of(folder) : nullptr;
+  if (listing != nullptr) listing->below = SIMBENCH_REAL(opendir)(own.below());
+  return folder;
 }
 
 SIMBENCH_CALL DIR* fdopendir(int fd) { return keep(SIMBENCH_REAL(fdopendir)(fd)); }
@@ -102,8 +121,11 @@ SIMBENCH_CALL dirent64* readdir64(DIR* folder) {
 SIMBENCH_CALL void rewinddir(DIR* folder) {
   SIMBENCH_REAL(rewinddir)(folder);
   if (Listing* listing = listing_of(folder)) {
+    DIR* below = listing->below;
+    if (below != nullptr) SIMBENCH_REAL(rewinddir)(below);
+    listing->below = nullptr;
     drop_listing(*listing);
-    listing->folder = folder;
+    *listing = {.folder = folder, .below = below};
   }
 }
 

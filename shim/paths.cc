@@ -101,7 +101,10 @@ OwnPath::OwnPath(const char* path, Use use) : text_(path) {
   const bool creates = is_whole || (use == Use::kCreates && is_own(path));
   if (creates) make_folders(room_);
   if (is_whole) machine_call(SYS_mkdirat, AT_FDCWD, room_, 0755);
-  if (is_folder || creates || is_there(room_) || is_absent(path)) text_ = room_;
+  const bool is_alone = is_folder || is_whole || is_absent(path);
+  if (!is_alone && !creates && !is_there(room_)) return;
+  text_ = room_;
+  if (!is_alone) below_ = path;
 }
 
 const char* seen_path(const char* path, char* room, std::size_t size) {

@@ -30,9 +30,13 @@ class OwnPath {
   explicit OwnPath(const char* path, Use use = Use::kReads);
   // Relative to an open folder, which does not matter for what is absolute.
   const char* text() const { return text_; }
+  // What the host's file lies over, of the machine's: a folder has the names of both. Null:
+  // nothing.
+  const char* below() const { return below_; }
 
  private:
   const char* text_;
+  const char* below_ = nullptr;
   char room_[PATH_MAX];
 };
 

@@ -99,7 +99,10 @@ std::string program_path(const std::string& word, const std::string& packages) {
   const auto add = [&folders](const std::string& root) {
     for (const char* folder : kFolders) folders.push_back(fs::path(root) / folder);
   };
-  if (!packages.empty()) add(packages);
+  if (!packages.empty()) {
+    add(packages);
+    add(packages + "/apart/" + word);
+  }
   add("/");
   for (const fs::path& folder : folders) {
     std::error_code ignored;
