@@ -117,7 +117,7 @@ struct Told {
   const char* name;
   Tell tell;
 };
-// Of the machine, and of the process.
+// These are the machine's, the others the process's.
 constexpr Told kTold[] = {
     {"/proc/uptime", tell_uptime},
     {"/proc/loadavg", tell_load},

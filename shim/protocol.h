@@ -205,6 +205,18 @@ struct FileSight {
   std::int64_t modified = 0;
 };
 
+// Which times of files are the machine's: the kernel stamps each change, and the time of the host's
+// clock is put there later, by the shim when the program closes what it wrote, by the world at the
+// end (sim/programs/host_files.h). The kernel's note of the last change (st_ctime) is always the
+// machine's. `born` is when the machine made the host's folder; ns since 1970.
+//
+// Whether the file has changed since, as all of the host's have.
+constexpr bool is_of_host(std::int64_t born, std::int64_t changed) { return changed >= born; }
+// Whether the kernel has stamped the last writing.
+constexpr bool is_of_machine(std::int64_t born, std::int64_t modified, std::int64_t changed) {
+  return modified >= born && modified <= changed;
+}
+
 struct TimerSetting {
   std::int64_t left;      // until it expires, or the time at which it does; 0: disarmed
   std::int64_t interval;  // 0: once

@@ -21,7 +21,6 @@
 #include <initializer_list>
 
 #include "shim/begin.h"
-#include "shim/file_times.h"
 #include "shim/link.h"
 #include "shim/paths.h"
 #include "shim/proc.h"
@@ -32,7 +31,7 @@ namespace {
 
 constexpr std::uint32_t kBlock = 4096;
 constexpr std::uint32_t kSector = 512;  // what st_blocks counts
-// Of the times at which files of the host can have changed: a program may say that one is older.
+// No file of the host has changed before: a program may say that one is older.
 constexpr std::int64_t kEarliest = kWorldBegin - 3600 * kSecond;
 // What this system's header may not have yet.
 constexpr std::uint32_t kMountMask = 0x1000;
@@ -43,7 +42,7 @@ std::uint32_t machine_group = 0;
 
 std::int64_t ns_of(const statx_timestamp& time) { return time.tv_sec * kSecond + time.tv_nsec; }
 
-statx_timestamp stamp_of(std::int64_t ns) {
+statx_timestamp as_stamp(std::int64_t ns) {
   statx_timestamp stamp{};
   stamp.tv_sec = ns / kSecond;
   stamp.tv_nsec = static_cast<std::uint32_t>(ns % kSecond);
@@ -66,9 +65,9 @@ std::int64_t look_at(struct statx& status) {
 
 void show_own(struct statx& status) {
   const std::int64_t modified = look_at(status);
-  status.stx_mtime = stamp_of(modified);
+  status.stx_mtime = as_stamp(modified);
   status.stx_atime = status.stx_mtime;
-  status.stx_ctime = stamp_of(modified < kEarliest ? kEarliest : modified);
+  status.stx_ctime = as_stamp(modified < kEarliest ? kEarliest : modified);
   status.stx_dev_major = major(kOwnDevice);
   status.stx_dev_minor = minor(kOwnDevice);
   if (status.stx_uid == machine_user) status.stx_uid = 0;
@@ -84,7 +83,7 @@ void show(struct statx& status) {
   } else {
     status.stx_atime = status.stx_mtime;
     for (statx_timestamp* each : {&status.stx_atime, &status.stx_mtime, &status.stx_ctime}) {
-      if (ns_of(*each) > kWorldBegin) *each = stamp_of(kWorldBegin);
+      if (ns_of(*each) > kWorldBegin) *each = as_stamp(kWorldBegin);
     }
   }
   status.stx_btime = {};

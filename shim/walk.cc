@@ -39,22 +39,22 @@ int base_of(const char* path) {
 }
 
 // How the walk goes on after a visit.
-struct Outcome {
+struct Visited {
   int result = 0;  // other than 0: that of the walk
   bool skips = false;
   bool goes_up = false;
 };
 
-Outcome outcome_of(const Walk& walk, int answered) {
+Visited visited_of(const Walk& walk, int answered) {
   if ((walk.flags & FTW_ACTIONRETVAL) == 0) return {.result = answered};
   if (answered == FTW_SKIP_SUBTREE) return {.skips = true};
   if (answered == FTW_SKIP_SIBLINGS) return {.goes_up = true};
   return {.result = answered == FTW_CONTINUE ? 0 : answered};
 }
 
-Outcome visit_at(const Walk& walk, char* path, int level);
+Visited visit_at(const Walk& walk, char* path, int level);
 
-Outcome visit_within(const Walk& walk, char* path, DIR* folder, int level) {
+Visited visit_within(const Walk& walk, char* path, DIR* folder, int level) {
   const std::size_t size = strlen(path);
   const char* between = size > 0 && path[size - 1] == '/' ? "" : "/";
   while (const dirent* entry = readdir(folder)) {
@@ -65,15 +65,15 @@ Outcome visit_within(const Walk& walk, char* path, DIR* folder, int level) {
       errno = ENAMETOOLONG;
       return {.result = -1};
     }
-    const Outcome outcome = visit_at(walk, path, level + 1);
+    const Visited done = visit_at(walk, path, level + 1);
     path[size] = '\0';
-    if (outcome.result != 0) return outcome;
-    if (outcome.goes_up) break;
+    if (done.result != 0) return done;
+    if (done.goes_up) break;
   }
   return {};
 }
 
-Outcome visit_at(const Walk& walk, char* path, int level) {
+Visited visit_at(const Walk& walk, char* path, int level) {
   struct stat status {};
   int kind = kind_at(path, walk.flags, status);
   FTW place{.base = base_of(path), .level = level};
@@ -81,19 +81,19 @@ Outcome visit_at(const Walk& walk, char* path, int level) {
   const bool is_after = (walk.flags & FTW_DEPTH) != 0;
   DIR* folder = kind == FTW_D ? opendir(path) : nullptr;
   if (kind == FTW_D && folder == nullptr) kind = FTW_DNR;
-  Outcome outcome;
+  Visited done;
   if (folder == nullptr || !is_after) {
-    outcome = outcome_of(walk, walk.visit(path, &status, kind, &place));
+    done = visited_of(walk, walk.visit(path, &status, kind, &place));
   }
-  if (folder == nullptr) return outcome;
-  if (outcome.result == 0 && !outcome.skips && !outcome.goes_up) {
-    outcome = visit_within(walk, path, folder, level);
+  if (folder == nullptr) return done;
+  if (done.result == 0 && !done.skips && !done.goes_up) {
+    done = visit_within(walk, path, folder, level);
   }
   closedir(folder);
-  if (outcome.result == 0 && is_after) {
-    outcome = outcome_of(walk, walk.visit(path, &status, FTW_DP, &place));
+  if (done.result == 0 && is_after) {
+    done = visited_of(walk, walk.visit(path, &status, FTW_DP, &place));
   }
-  return outcome;
+  return done;
 }
 
 }  // namespace

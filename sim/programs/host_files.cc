@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "shim/file_times.h"
+#include "shim/protocol.h"
 #include "sim/programs/kernel_clock.h"
 
 namespace simbench::sim {
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kASecond = 1'000'000'000;
 
-std::int64_t ns_of(const statx_timestamp& time) { return time.tv_sec * kASecond + time.tv_nsec; }
+std::int64_t file_ns(const statx_timestamp& time) { return time.tv_sec * kASecond + time.tv_nsec; }
 
 std::optional<struct statx> status_of(int parent, const char* name) {
   struct statx status {};
@@ -71,7 +71,7 @@ void HostFiles::stamp_all() {
   if (folder < 0) return;
   if (const auto status = status_of(folder, "")) {
     const bool has_birth = (status->stx_mask & STATX_BTIME) != 0;
-    const std::int64_t born = ns_of(has_birth ? status->stx_btime : status->stx_ctime);
+    const std::int64_t born = file_ns(has_birth ? status->stx_btime : status->stx_ctime);
     stamp_within(folder, born);
     stamp(folder, "", born);
   }
@@ -92,11 +92,11 @@ void HostFiles::stamp_within(int folder, std::int64_t born) {
 void HostFiles::stamp(int parent, const char* name, std::int64_t born) {
   const auto status = status_of(parent, name);
   if (!status) return;
-  const std::int64_t modified = ns_of(status->stx_mtime);
-  if (!shim::is_of_machine(born, modified, ns_of(status->stx_ctime))) return;
+  const std::int64_t modified = file_ns(status->stx_mtime);
+  if (!shim::is_of_machine(born, modified, file_ns(status->stx_ctime))) return;
   const Seen seen = look({.device = makedev(status->stx_dev_major, status->stx_dev_minor),
                           .file = status->stx_ino,
-                          .born = ns_of(status->stx_btime),
+                          .born = file_ns(status->stx_btime),
                           .modified = modified});
   const timespec time{.tv_sec = seen.modified / kASecond, .tv_nsec = seen.modified % kASecond};
   const timespec both[] = {time, time};

@@ -3,7 +3,7 @@
 //
 // The kernel stamps what a program writes with the machine's time. When a file was written to by
 // the host's clock is known to the next look at it, or at the end, when stamp_all() gives all that
-// have the machine's time the host's (shim/file_times.h).
+// have the machine's time the host's (shim/protocol.h).
 //
 // Sights are not trusted: of more than kMost files no number is kept.
 //
@@ -40,7 +40,7 @@ class HostFiles {
 
   // Number -1: there are too many.
   Seen look(const shim::FileSight& sight);
-  // Of what is in the folder, and the folder itself. Its programs have ended; links are not
+  // All that is in the folder, and the folder itself. Its programs have ended; links are not
   // followed. What cannot be reached stays as it is.
   void stamp_all();
 

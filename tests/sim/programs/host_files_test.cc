@@ -10,7 +10,7 @@
 #include <string>
 
 #include "scenarios/loader.h"
-#include "shim/file_times.h"
+#include "shim/protocol.h"
 #include "sim/programs/kernel_clock.h"
 #include "tests/scratch_folder.h"
 #include "tests/sim/host/service_world.h"

@@ -21,7 +21,7 @@ namespace {
 // When something ended, ms, and what.
 using Said = std::pair<double, std::string>;
 
-std::vector<Said> lines_of(const std::string& text) {
+std::vector<Said> said_in(const std::string& text) {
   std::vector<Said> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) {
@@ -35,7 +35,7 @@ class Languages : public RealPrograms {
  protected:
   // A slave's program says this; each exchange of messages takes some 0.3 ms.
   void expect_said(const std::string& log, const std::vector<Said>& expected) const {
-    const std::vector<Said> said = lines_of(file(1, log));
+    const std::vector<Said> said = said_in(file(1, log));
     ASSERT_EQ(said.size(), expected.size()) << file(1, log);
     for (std::size_t i = 0; i < nonempty(expected).size(); ++i) {
       EXPECT_EQ(said[i].second, expected[i].second);

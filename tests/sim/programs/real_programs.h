@@ -31,6 +31,7 @@
 #include "tests/nonempty.h"
 #include "tests/scratch_folder.h"
 #include "tests/sim/host/service_world.h"
+#include "tests/sim/programs/calls_on_hosts.h"
 
 namespace simbench::sim {
 
@@ -89,12 +90,9 @@ inline void expect_same(const LeftFiles& left, const LeftFiles& again) {
   EXPECT_EQ(again.size(), left.size());
 }
 
-// The scripts and programs of the tests.
+// A script of tests/programs.
 inline std::string test_script(const std::string& name) {
   return std::string(SIMBENCH_SOURCE_DIR) + "/tests/programs/" + name;
-}
-inline std::string test_program(const std::string& name) {
-  return std::string(SIMBENCH_PROGRAMS) + "/simbench_" + name;
 }
 
 class RealPrograms : public testing::Test {
