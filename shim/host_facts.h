@@ -1,7 +1,7 @@
 // What a simulated host is: one processor, on which the programs take no time, so much memory, and
 // a disk that never fills.
 //
-//   print(host_uptime_s());
+//   print(host_uptime());
 #pragma once
 
 #include <cstdint>

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 
+#include "shim/children.h"
 #include "shim/paths.h"
 #include "shim/senders.h"
 #include "shim/waiting.h"
@@ -81,6 +82,17 @@ bool is_signal_file(int fd) { return fd >= 0 && fd < kMostDescriptors && signal_
 void show_senders(void* data, ssize_t size) {
   auto* infos = static_cast<signalfd_siginfo*>(data);
   for (ssize_t i = 0; i < size / static_cast<ssize_t>(sizeof *infos); ++i) show_sender(infos[i]);
+}
+
+// Who is at the other end: the kernel says it by the machine's number.
+void show_peer(void* data, std::size_t size) {
+  ucred peer{};
+  if (!is_simulated() || size < sizeof peer) return;
+  memcpy(&peer, data, sizeof peer);
+  if (peer.pid > 0) peer.pid = number_of_process(peer.pid);
+  peer.uid = 0;
+  peer.gid = 0;
+  memcpy(data, &peer, sizeof peer);
 }
 
 // A descriptor that does not wait meanwhile.
@@ -154,7 +166,19 @@ ssize_t local_sendmsg(int fd, const msghdr* message, int flags) {
 
 ssize_t local_recvmsg(int fd, msghdr* message, int flags) {
   if (!waits_to_read(fd, flags)) return -1;
-  return told(static_cast<ssize_t>(machine_call(SYS_recvmsg, fd, message, flags)));
+  const auto got = static_cast<ssize_t>(machine_call(SYS_recvmsg, fd, message, flags));
+  for (cmsghdr* each = got < 0 ? nullptr : CMSG_FIRSTHDR(message); each != nullptr;
+       each = CMSG_NXTHDR(message, each)) {
+    if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_CREDENTIALS) continue;
+    show_peer(CMSG_DATA(each), each->cmsg_len - CMSG_LEN(0));
+  }
+  return told(got);
+}
+
+int local_getsockopt(int fd, int level, int option, void* value, socklen_t* size) {
+  const int result = SIMBENCH_REAL(getsockopt)(fd, level, option, value, size);
+  if (result == 0 && level == SOL_SOCKET && option == SO_PEERCRED) show_peer(value, *size);
+  return result;
 }
 
 int local_accept(int fd, sockaddr* name, socklen_t* size, int flags) {

@@ -12,6 +12,7 @@
 #include <sys/random.h>
 #include <sys/resource.h>
 #include <sys/signalfd.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/sysinfo.h>
 #include <sys/times.h>
@@ -380,6 +381,13 @@ void say_children() {
   signalfd_siginfo read_one{};
   if (read(signals, &read_one, sizeof read_one) > 0) {
     say("signalfd", read_one.ssi_signo, read_one.ssi_pid, read_one.ssi_uid);
+  }
+  int ends[2];
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0 &&
+      getsockopt(ends[0], SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0) {
+    say("peer", peer.pid, peer.uid, peer.gid);
   }
   kill(getpid(), SIGUSR2);
   siginfo_t taken{};

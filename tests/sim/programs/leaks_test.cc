@@ -47,6 +47,7 @@ TEST_F(Leaks, OfWhatTheMachineTellsByCalls) {
   EXPECT_THAT(said, HasSubstr("\nsignal 17 1 102 0 0 0 3\n"));
   EXPECT_THAT(said, HasSubstr("\nsignal 10 -1 100 0 "));
   EXPECT_THAT(said, HasSubstr("\nsignalfd 12 100 0\n"));
+  EXPECT_THAT(said, HasSubstr("\npeer 100 0 0\n"));
   EXPECT_THAT(said, HasSubstr("\ngetrusage 0 0 0 0 0 0"));
   EXPECT_THAT(said, HasSubstr("\nhost host1 /files /files\n"));
   // The machine's processors and its load.
