@@ -134,6 +134,11 @@ bool is_of_machine(int number) {
     case SYS_rt_sigsuspend:
     case SYS_rt_sigtimedwait:
     case SYS_getrandom:
+    case SYS_getrusage:
+    case SYS_times:
+    case SYS_sysinfo:
+    case SYS_getcpu:
+    case SYS_sched_getaffinity:
 #ifdef __x86_64__
     case SYS_select:
     case SYS_poll:

@@ -22,6 +22,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -138,7 +139,26 @@ const std::string& program_of(const Child::Settings& settings) {
 rlim_t cpu_seconds(std::chrono::milliseconds patience) {
   const auto whole = std::chrono::ceil<std::chrono::seconds>(patience * Child::kMostCpu);
   return static_cast<rlim_t>(std::max<std::chrono::seconds::rep>(1, whole.count()));
-}
+  // Programs of a package start each other by their names.
+  std::string search_path(const Child::Settings& settings) {
+    const std::string folder = std::filesystem::path(program_of(settings)).parent_path().string();
+    std::string path = "/usr/sbin:/usr/bin:/sbin:/bin";
+    for (const char* each : {"/usr/sbin", "/usr/bin", "/sbin", "/bin"}) {
+      if (folder == each) return path;
+    }
+    return folder.empty() ? path : folder + ":" + path;
+  }
+
+  std::vector<std::string> environment_of(const Child::Settings& settings) {
+    std::map<std::string, std::string> all = {
+        {"PATH", search_path(settings)}, {"TZ", "UTC0"}, {"LC_ALL", "C"}};
+    for (const auto& [name, value] : settings.environment) all[name] = value;
+    all["LD_PRELOAD"] = settings.shim;
+    all[shim::kLinkVariable] = std::to_string(kLink);
+    std::vector<std::string> environment;
+    for (const auto& [name, value] : all) environment.push_back(fmt::format("{}={}", name, value));
+    return environment;
+  }
 
 }  // namespace
 
@@ -184,12 +204,7 @@ std::string Child::start(const Settings& settings, int& link) {
   static std::once_flag raised;
   std::call_once(raised, raise_own_descriptors);
   std::vector<std::string> arguments = settings.command;
-  std::vector<std::string> environment = {
-      fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
-      "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "TZ=UTC0", "LC_ALL=C"};
-  for (const auto& [name, value] : settings.environment) {
-    environment.push_back(fmt::format("{}={}", name, value));
-  }
+  std::vector<std::string> environment = environment_of(settings);
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
   const std::string& program = program_of(settings);

@@ -31,6 +31,12 @@ bool lacks_drift(const std::string& text, const HostPlaces& places) {
   return text.find(kNtpDrift) != std::string::npos || text.find(kChronyDrift) != std::string::npos;
 }
 
+// The rights of a file that root makes, whatever the caller's umask is.
+void make_usual(const std::filesystem::path& path) {
+  const bool is_folder = std::filesystem::is_directory(path);
+  std::filesystem::permissions(path, std::filesystem::perms(is_folder ? 0755 : 0644));
+}
+
 }  // namespace
 
 std::string fill(std::string text, const HostPlaces& places) {
@@ -67,10 +73,14 @@ std::string make_folder(const std::filesystem::path& folder,
     if (lacks_drift(content, places)) continue;
     std::filesystem::create_directories((folder / name).parent_path());
     std::ofstream(folder / name) << fill(content, places);
+  }
+  make_usual(folder);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    make_usual(entry.path());
     const timespec begin{.tv_sec = shim::kWorldBegin / 1'000'000'000, .tv_nsec = 0};
     const timespec both[] = {begin, begin};
-    utimensat(AT_FDCWD, (folder / name).c_str(), both, 0);
-    if (is_root()) give_to_nobody(folder / name);
+    utimensat(AT_FDCWD, entry.path().c_str(), both, 0);
+    if (is_root()) give_to_nobody(entry.path());
   }
   return folder.string();
 }

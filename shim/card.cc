@@ -155,7 +155,12 @@ bool world_clock(clockid_t clock, std::int64_t& result) {
   constexpr clockid_t kKind = 7;
   constexpr clockid_t kOfDescriptor = 3;
   result = clock;
-  if (clock >= 0 || (clock & kKind) != kOfDescriptor) return true;
+  if (clock >= 0) return true;
+  if ((clock & kKind) != kOfDescriptor) {  // CPU time of a process, or of a thread of it
+    constexpr clockid_t kOfThread = 4;
+    result = (clock & kOfThread) != 0 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID;
+    return true;
+  }
   result = kCardClock;
   if (kind_of(~(clock >> 3)) == Kind::kCard) return true;
   errno = EINVAL;

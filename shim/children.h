@@ -38,6 +38,8 @@ class Environment {
 
 // As execve(); gives up for a program that the preloaded library cannot reach.
 int execute(const char* given, char* const* words, char* const* environment);
+// Whether hosts do not have it: ldconfig, which is static, and which Python asks for libraries.
+bool is_absent_program(const char* path);
 // Gives up if the preloaded library cannot reach it; a file that is not there is for the caller.
 void check_reach(const char* path);
 // Where a name without a slash is found by PATH; the name itself if it is nowhere.

@@ -82,6 +82,11 @@ char* interpreter_in(char* line) {
 
 }  // namespace
 
+bool is_absent_program(const char* path) {
+  const char* name = strrchr(path, '/');
+  return strcmp(name != nullptr ? name + 1 : path, "ldconfig") == 0;
+}
+
 void check_reach(const char* path) {
   char line[PATH_MAX] = {};
   const char* name = path;
@@ -176,6 +181,7 @@ int execute(const char* given, char* const* words, char* const* environment) {
   const char* path = own_path.text();
   if (!is_simulated()) return static_cast<int>(machine_call(SYS_execve, path, words, environment));
   if (machine_call(SYS_faccessat, AT_FDCWD, path, X_OK) < 0) return -1;
+  if (is_absent_program(path)) return refuse(ENOENT);
   check_reach(path);
   const Environment own(environment, link_number(), true);
   if (own.words() == nullptr) return refuse(ENOMEM);
@@ -271,6 +277,7 @@ namespace {
 // By the real function, which does what the actions and attributes say.
 template <class Spawn>
 int start_child(Spawn spawn, pid_t* process, const char* path, char* const* environment) {
+  if (is_absent_program(path)) return ENOENT;
   const int before = errno;
   check_reach(path);
   Newcomer child;

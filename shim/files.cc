@@ -1,9 +1,7 @@
-// Files: opened, named and removed where the program's paths lead (shim/paths.h), with times of the
-// world's clock and names in order.
+// Files: opened, named and removed where the program's paths lead (shim/paths.h).
 //
 // The kernel stamps what a program writes with the machine's time. The time of the host's system
-// clock is put there when the file is closed; until then, and for the machine's files from after
-// the world's beginning, it is what stat() says.
+// clock is put there when the file is closed.
 #include "shim/files.h"
 
 #include <errno.h>
@@ -15,65 +13,27 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
-#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
-#include <utime.h>
 
-#include <initializer_list>
-
-#include "shim/begin.h"
 #include "shim/chance.h"
 #include "shim/devices.h"
 #include "shim/link.h"
 #include "shim/local.h"
 #include "shim/paths.h"
+#include "shim/proc.h"
 #include "shim/refused_calls.h"
+#include "shim/status.h"
 
 namespace simbench::shim {
 namespace {
 
 bool is_written[kMostDescriptors];  // opened to be
 
-// The machine's time at which the program began, as the kernel stamped its folder.
-timespec machine_begin{};
-
-bool is_before(const timespec& one, const timespec& other) {
-  return one.tv_sec != other.tv_sec ? one.tv_sec < other.tv_sec : one.tv_nsec < other.tv_nsec;
-}
-
-timespec world_now() {
-  return to_timespec(ask({.call = Call::kReadClock, .a = CLOCK_REALTIME, .b = 1}));
-}
-
-void show(timespec& time, const timespec& now) {
-  if (!is_before(machine_begin, time)) {
-    // The machine's: one from after the world's beginning is from then.
-    const timespec begin{.tv_sec = kWorldBegin / kSecond, .tv_nsec = 0};
-    if (is_before(begin, time)) time = is_before(now, begin) ? now : begin;
-    return;
-  }
-  time = now;
-}
-
-void show_times(struct stat& status) {
-  const timespec now = world_now();
-  for (timespec* each : {&status.st_atim, &status.st_mtim, &status.st_ctim}) {
-    if (is_before(now, *each)) show(*each, now);
-  }
-}
-
-int stat_at(int folder, const char* path, struct stat* status, int flags) {
-  if (is_device(path)) return describe_device(path, *status);
-  const OwnPath own(path);
-  const long result = machine_call(SYS_newfstatat, folder, own.text(), status, flags);
-  if (result == 0 && is_simulated()) show_times(*status);
-  return static_cast<int>(result);
-}
-
 int open_path(int folder, const char* path, int flags, mode_t mode) {
   if (is_chance(path)) return open_descriptor(Kind::kChance, false, (flags & O_CLOEXEC) != 0);
   if (is_device(path)) return open_device(path, flags);
+  if (is_told(path)) return open_told(path, flags);
   const OwnPath own(path, (flags & O_CREAT) != 0 ? Use::kCreates : Use::kReads);
   const int fd = static_cast<int>(machine_call(SYS_openat, folder, own.text(), flags, mode));
   if (fd >= 0 && is_simulated()) {
@@ -90,13 +50,6 @@ mode_t mode_of(int flags, va_list arguments) {
 
 }  // namespace
 
-void begin_files() {
-  struct stat status {};
-  if (machine_call(SYS_newfstatat, AT_FDCWD, own_folder(), &status, 0) == 0) {
-    machine_begin = status.st_mtim;
-  }
-}
-
 void note_written(int fd, bool is) {
   if (fd >= 0 && fd < kMostDescriptors) is_written[fd] = is;
 }
@@ -105,9 +58,11 @@ void stamp_file(int fd) {
   if (fd < 0 || fd >= kMostDescriptors || !is_written[fd] || !is_simulated()) return;
   is_written[fd] = false;
   const int before = errno;
-  const timespec now = world_now();
-  const timespec both[2] = {now, now};
-  machine_call(SYS_utimensat, fd, nullptr, both, 0, kOfTheShim);
+  timespec modified{};
+  if (find_modified(fd, modified)) {
+    const timespec both[2] = {modified, modified};
+    machine_call(SYS_utimensat, fd, nullptr, both, 0, kOfTheShim);
+  }
   errno = before;
 }
 
@@ -161,6 +116,10 @@ SIMBENCH_CALL FILE* fopen(const char* path, const char* mode) {
   if (is_chance(path)) {
     return fopencookie(nullptr, mode, {.read = read_chance, .write = {}, .seek = {}, .close = {}});
   }
+  if (is_told(path)) {
+    const int told = open_told(path, writes(mode) ? O_RDWR : O_RDONLY);
+    return told < 0 ? nullptr : fdopen(told, mode);
+  }
   const OwnPath own(path, writes(mode) ? Use::kCreates : Use::kReads);
   FILE* file = SIMBENCH_REAL(fopen)(own.text(), mode);
   if (file != nullptr && is_simulated()) note_written(fileno(file), writes(mode));
@@ -178,67 +137,12 @@ SIMBENCH_CALL FILE* freopen64(const char* path, const char* mode, FILE* file) {
   return freopen(path, mode, file);
 }
 
-// What stat() says.
-
-SIMBENCH_CALL int stat(const char* path, struct stat* status) {
-  return stat_at(AT_FDCWD, path, status, 0);
-}
-SIMBENCH_CALL int lstat(const char* path, struct stat* status) {
-  return stat_at(AT_FDCWD, path, status, AT_SYMLINK_NOFOLLOW);
-}
-SIMBENCH_CALL int fstatat(int folder, const char* path, struct stat* status, int flags) {
-  return stat_at(folder, path, status, flags);
-}
-SIMBENCH_CALL int fstat(int fd, struct stat* status) {
-  if (is_simulated() && describe_device(fd, *status)) return 0;
-  const long result = machine_call(SYS_fstat, fd, status);
-  if (result == 0 && is_simulated()) show_times(*status);
-  return static_cast<int>(result);
-}
-
-SIMBENCH_CALL int stat64(const char*, struct stat64*) __attribute__((alias("stat")));
-SIMBENCH_CALL int lstat64(const char*, struct stat64*) __attribute__((alias("lstat")));
-SIMBENCH_CALL int fstatat64(int, const char*, struct stat64*, int)
-    __attribute__((alias("fstatat")));
-SIMBENCH_CALL int fstat64(int, struct stat64*) __attribute__((alias("fstat")));
-
-// What programs that were compiled before glibc 2.33 call.
-SIMBENCH_CALL int __xstat(int /*version*/, const char* path, struct stat* status) {
-  return stat(path, status);
-}
-SIMBENCH_CALL int __lxstat(int /*version*/, const char* path, struct stat* status) {
-  return lstat(path, status);
-}
-SIMBENCH_CALL int __fxstat(int /*version*/, int fd, struct stat* status) {
-  return fstat(fd, status);
-}
-SIMBENCH_CALL int __xstat64(int, const char*, struct stat*) __attribute__((alias("__xstat")));
-SIMBENCH_CALL int __lxstat64(int, const char*, struct stat*) __attribute__((alias("__lxstat")));
-SIMBENCH_CALL int __fxstat64(int, int, struct stat*) __attribute__((alias("__fxstat")));
-
-SIMBENCH_CALL int statx(int folder, const char* path, int flags, unsigned int mask,
-                        struct statx* status) {
-  if (is_device(path)) return describe_device(path, *status);
-  const OwnPath own(path);
-  const long result = machine_call(SYS_statx, folder, own.text(), flags, mask, status);
-  if (result < 0 || !is_simulated()) return static_cast<int>(result);
-  const timespec now = world_now();
-  for (statx_timestamp* each :
-       {&status->stx_atime, &status->stx_mtime, &status->stx_ctime, &status->stx_btime}) {
-    timespec time{.tv_sec = each->tv_sec, .tv_nsec = each->tv_nsec};
-    if (!is_before(now, time)) continue;
-    show(time, now);
-    each->tv_sec = time.tv_sec;
-    each->tv_nsec = static_cast<std::uint32_t>(time.tv_nsec);
-  }
-  return 0;
-}
-
 // Calls with one path, which do on the program's own what they say.
 
 SIMBENCH_CALL int access(const char* path, int mode) {
   struct stat status {};
   if (is_device(path)) return describe_device(path, status);
+  if (is_told(path)) return (mode & (W_OK | X_OK)) != 0 ? refuse(EACCES) : 0;
   return static_cast<int>(machine_call(SYS_faccessat, AT_FDCWD, OwnPath(path).text(), mode));
 }
 SIMBENCH_CALL int euidaccess(const char* path, int mode) { return access(path, mode); }
@@ -280,11 +184,30 @@ SIMBENCH_CALL int truncate(const char* path, off_t size) {
 }
 SIMBENCH_CALL int truncate64(const char* path, off64_t size) { return truncate(path, size); }
 
-SIMBENCH_CALL ssize_t readlink(const char* path, char* room, std::size_t size) {
-  return machine_call(SYS_readlinkat, AT_FDCWD, OwnPath(path).text(), room, size);
-}
 SIMBENCH_CALL ssize_t readlinkat(int folder, const char* path, char* room, std::size_t size) {
-  return machine_call(SYS_readlinkat, folder, OwnPath(path).text(), room, size);
+  char found[PATH_MAX];
+  const long length =
+      machine_call(SYS_readlinkat, folder, OwnPath(path).text(), found, sizeof found - 1);
+  if (length < 0) return -1;
+  found[length] = '\0';
+  char other[PATH_MAX];
+  const char* seen = is_simulated() ? seen_path(found, other, sizeof other) : found;
+  // Descriptors without a path: "pipe:[7]".
+  struct stat status {};
+  const char* number = strchr(found, '[');
+  if (is_simulated() && found[0] != '/' && number != nullptr && number[1] >= '0' &&
+      number[1] <= '9' && fstatat(folder, path, &status, 0) == 0) {
+    snprintf(other, sizeof other, "%.*s[%lu]", static_cast<int>(number - found), found,
+             static_cast<unsigned long>(status.st_ino));
+    seen = other;
+  }
+  const std::size_t whole = strlen(seen);
+  const std::size_t taken = whole < size ? whole : size;
+  memcpy(room, seen, taken);
+  return static_cast<ssize_t>(taken);
+}
+SIMBENCH_CALL ssize_t readlink(const char* path, char* room, std::size_t size) {
+  return readlinkat(AT_FDCWD, path, room, size);
 }
 
 SIMBENCH_CALL char* realpath(const char* path, char* result) {
@@ -310,6 +233,12 @@ SIMBENCH_CALL char* getcwd(char* room, std::size_t size) {
   }
   return strcpy(room, seen);
 }
+
+SIMBENCH_CALL char* get_current_dir_name() {
+  return is_simulated() ? getcwd(nullptr, 0) : SIMBENCH_REAL(get_current_dir_name)();
+}
+SIMBENCH_CALL char* plain_getwd(char* room) __asm__("getwd");
+char* plain_getwd(char* room) { return getcwd(room, PATH_MAX); }
 
 // Calls with two.
 

@@ -14,6 +14,7 @@
 
 #include "shim/begin.h"
 #include "shim/link.h"
+#include "shim/senders.h"
 
 namespace simbench::shim {
 namespace {
@@ -21,7 +22,8 @@ namespace {
 constexpr std::size_t kPage = 4096;
 char own_path[4096];
 
-struct sigaction fault_action {};  // the program's own
+struct sigaction fault_action {};                // the program's own
+void (*handlers[NSIG])(int, siginfo_t*, void*);  // likewise, of those that look at the sender
 
 // What the kernel's functions for readers of clocks do from now on: the system call, which the
 // filter hands to the shim.
@@ -37,6 +39,7 @@ constexpr Replaced kReplaced[] = {
 #ifdef SYS_time
     {"__vdso_time", SYS_time},
 #endif
+    {"__vdso_getcpu", SYS_getcpu},
 };
 
 void write_call(unsigned char* place, Word call) {
@@ -174,6 +177,18 @@ void hide_machine(char** environment) {
   set_counter_hidden(true);
 }
 
+namespace {
+
+void deliver(int signal, siginfo_t* info, void* stopped) {
+  const int before = errno;
+  siginfo_t seen = *info;
+  show_sender(seen);
+  errno = before;
+  handlers[signal](signal, &seen, stopped);
+}
+
+}  // namespace
+
 // The shim's handler stays the first, and signals that it needs are never blocked.
 SIMBENCH_CALL int sigaction(int signal, const struct sigaction* action, struct sigaction* before) {
   if (!is_simulated()) return SIMBENCH_REAL(sigaction)(signal, action, before);
@@ -182,11 +197,29 @@ SIMBENCH_CALL int sigaction(int signal, const struct sigaction* action, struct s
     if (action != nullptr) fault_action = *action;
     return 0;
   }
-  if (action == nullptr) return SIMBENCH_REAL(sigaction)(signal, action, before);
-  struct sigaction changed = *action;
-  sigdelset(&changed.sa_mask, SIGSYS);
-  sigdelset(&changed.sa_mask, SIGSEGV);
-  return SIMBENCH_REAL(sigaction)(signal, &changed, before);
+  if (signal <= 0 || signal >= NSIG) return refuse(EINVAL);
+  const auto own = handlers[signal];
+  struct sigaction changed {};
+  if (action != nullptr) {
+    changed = *action;
+    sigdelset(&changed.sa_mask, SIGSYS);
+    sigdelset(&changed.sa_mask, SIGSEGV);
+    const bool has_handler = changed.sa_handler != SIG_DFL && changed.sa_handler != SIG_IGN;
+    if ((changed.sa_flags & SA_SIGINFO) != 0 && has_handler) {
+      handlers[signal] = changed.sa_sigaction;
+      changed.sa_sigaction = deliver;
+    }
+  }
+  struct sigaction former {};
+  if (SIMBENCH_REAL(sigaction)(signal, action != nullptr ? &changed : nullptr, &former) < 0) {
+    handlers[signal] = own;
+    return -1;
+  }
+  if ((former.sa_flags & SA_SIGINFO) != 0 && former.sa_sigaction == deliver) {
+    former.sa_sigaction = own;
+  }
+  if (before != nullptr) *before = former;
+  return 0;
 }
 
 namespace {

@@ -16,7 +16,9 @@
 
 #include <cstddef>
 
+#include "shim/children.h"
 #include "shim/paths.h"
+#include "shim/senders.h"
 #include "shim/waiting.h"
 
 namespace simbench::shim {
@@ -71,6 +73,26 @@ class OwnName {
 bool waits_to_read(int fd, int flags) {
   if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return true;
   return wait_for_ready(fd, POLLIN, -1);
+}
+
+bool signal_files[kMostDescriptors];  // of signalfd()
+
+bool is_signal_file(int fd) { return fd >= 0 && fd < kMostDescriptors && signal_files[fd]; }
+
+void show_senders(void* data, ssize_t size) {
+  auto* infos = static_cast<signalfd_siginfo*>(data);
+  for (ssize_t i = 0; i < size / static_cast<ssize_t>(sizeof *infos); ++i) show_sender(infos[i]);
+}
+
+// Who is at the other end: the kernel says it by the machine's number.
+void show_peer(void* data, std::size_t size) {
+  ucred peer{};
+  if (!is_simulated() || size < sizeof peer) return;
+  memcpy(&peer, data, sizeof peer);
+  if (peer.pid > 0) peer.pid = number_of_process(peer.pid);
+  peer.uid = 0;
+  peer.gid = 0;
+  memcpy(data, &peer, sizeof peer);
 }
 
 // A descriptor that does not wait meanwhile.
@@ -144,7 +166,19 @@ ssize_t local_sendmsg(int fd, const msghdr* message, int flags) {
 
 ssize_t local_recvmsg(int fd, msghdr* message, int flags) {
   if (!waits_to_read(fd, flags)) return -1;
-  return told(static_cast<ssize_t>(machine_call(SYS_recvmsg, fd, message, flags)));
+  const auto got = static_cast<ssize_t>(machine_call(SYS_recvmsg, fd, message, flags));
+  for (cmsghdr* each = got < 0 ? nullptr : CMSG_FIRSTHDR(message); each != nullptr;
+       each = CMSG_NXTHDR(message, each)) {
+    if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_CREDENTIALS) continue;
+    show_peer(CMSG_DATA(each), each->cmsg_len - CMSG_LEN(0));
+  }
+  return told(got);
+}
+
+int local_getsockopt(int fd, int level, int option, void* value, socklen_t* size) {
+  const int result = SIMBENCH_REAL(getsockopt)(fd, level, option, value, size);
+  if (result == 0 && level == SOL_SOCKET && option == SO_PEERCRED) show_peer(value, *size);
+  return result;
 }
 
 int local_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
@@ -156,8 +190,10 @@ int local_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
 
 ssize_t local_read(int fd, void* data, std::size_t size) {
   if (!waits_to_read(fd, 0)) return -1;
+  const auto got = static_cast<ssize_t>(machine_call(SYS_read, fd, data, size));
+  if (is_signal_file(fd)) show_senders(data, got);
   // Who writes may have waited for the room.
-  return told(static_cast<ssize_t>(machine_call(SYS_read, fd, data, size)));
+  return told(got);
 }
 
 ssize_t local_write(int fd, const void* data, std::size_t size) {
@@ -197,7 +233,9 @@ SIMBENCH_CALL int socketpair(int domain, int type, int protocol, int ends[2]) {
 namespace {
 
 int keep_local(long fd) {
-  if (fd >= 0 && is_simulated()) set_kind(static_cast<int>(fd), Kind::kLocal);
+  if (fd < 0 || !is_simulated()) return static_cast<int>(fd);
+  set_kind(static_cast<int>(fd), Kind::kLocal);
+  if (fd < kMostDescriptors) signal_files[fd] = false;
   return static_cast<int>(fd);
 }
 
@@ -225,7 +263,10 @@ SIMBENCH_CALL int inotify_init() noexcept { return inotify_init1(0); }
 // Signals that are blocked stay with the process until they are read here.
 SIMBENCH_CALL int signalfd(int fd, const sigset_t* mask, int flags) noexcept {
   const long result = machine_call(SYS_signalfd4, fd, mask, 8, flags);
-  return fd < 0 ? keep_local(result) : static_cast<int>(result);
+  if (fd >= 0) return static_cast<int>(result);
+  const int made = keep_local(result);
+  if (made >= 0 && made < kMostDescriptors) signal_files[made] = is_simulated();
+  return made;
 }
 
 }  // namespace simbench::shim

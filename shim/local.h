@@ -26,6 +26,7 @@ int local_connect(int fd, const sockaddr* name, socklen_t size);
 ssize_t local_sendmsg(int fd, const msghdr* message, int flags);
 ssize_t local_recvmsg(int fd, msghdr* message, int flags);
 int local_accept(int fd, sockaddr* name, socklen_t* size, int flags);
+int local_getsockopt(int fd, int level, int option, void* value, socklen_t* size);
 ssize_t local_read(int fd, void* data, std::size_t size);
 ssize_t local_write(int fd, const void* data, std::size_t size);
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "shim/link.h"
+#include "shim/proc.h"
 
 namespace simbench::shim {
 namespace {
@@ -17,6 +18,8 @@ char folder[PATH_MAX];
 
 // What is the host's own.
 constexpr const char* kOwn[] = {"/run", "/var", "/tmp", "/dev/shm"};
+// What of the machine's it may read, without waiting for another's end of a pipe.
+constexpr int kToLook = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 
 bool is_below(const char* path, const char* above) {
   const std::size_t size = strlen(above);
@@ -28,6 +31,26 @@ bool is_own(const char* path) {
     if (is_below(path, each)) return true;
   }
   return false;
+}
+
+bool is_own_folder(const char* path) {
+  for (const char* each : kOwn) {
+    if (strcmp(path, each) == 0) return true;
+  }
+  return false;
+}
+
+bool is_readable(const char* path) {
+  const int before = errno;
+  const long file = machine_call(SYS_openat, AT_FDCWD, path, kToLook);
+  if (file >= 0) machine_call(SYS_close, file);
+  errno = before;
+  return file >= 0;
+}
+
+// Whether the host has none although the machine may: what is not for the program to read.
+bool is_absent(const char* path) {
+  return is_own(path) ? !is_readable(path) : !is_of_process(path);
 }
 
 // The folders that lead to it, within the host's folder.
@@ -43,14 +66,14 @@ void make_folders(char* path) {
   errno = before;
 }
 
-// Folders of the machine's stay what they are, whatever files are given in their place.
-bool is_there(const char* path, bool may_be_folder) {
+// `kind`: S_IFDIR; 0: any.
+bool is_there(const char* path, mode_t kind = 0) {
   const int before = errno;
   struct stat status {};
   const bool found =
       machine_call(SYS_newfstatat, AT_FDCWD, path, &status, AT_SYMLINK_NOFOLLOW) == 0;
   errno = before;
-  return found && (may_be_folder || !S_ISDIR(status.st_mode));
+  return found && (kind == 0 || (status.st_mode & S_IFMT) == kind);
 }
 
 }  // namespace
@@ -75,9 +98,16 @@ OwnPath::OwnPath(const char* path, Use use) : text_(path) {
   if (is_below(rest, "/var/run")) rest += strlen("/var");
   const int written = snprintf(room_, sizeof room_, "%s%s", folder, rest);
   if (written < 0 || static_cast<std::size_t>(written) >= sizeof room_) return;
-  const bool creates = use == Use::kCreates && is_own(path);
-  if (is_folder || creates || is_there(room_, is_own(path))) text_ = room_;
+  const bool is_whole = is_own_folder(path);
+  const bool creates = is_whole || (use == Use::kCreates && is_own(path));
   if (creates) make_folders(room_);
+  if (is_whole) machine_call(SYS_mkdirat, AT_FDCWD, room_, 0755);
+  const bool is_alone = is_folder || is_whole || is_absent(path);
+  if (!is_alone && !creates && !is_there(room_)) return;
+  const bool is_machines =
+      !is_alone && !is_own(path) && is_there(room_, S_IFDIR) && is_there(path, S_IFDIR);
+  text_ = is_machines ? path : room_;
+  if (!is_alone) besides_ = is_machines ? room_ : path;
 }
 
 const char* seen_path(const char* path, char* room, std::size_t size) {

@@ -2,11 +2,14 @@
 //
 //   /files/NAME             the host's folder: NAME
 //   other absolute paths    the file of that name in the host's folder if it is there
-//                           (etc/ntp.conf), else the machine's
+//                           (etc/ntp.conf), else the machine's;
+//                           folders of the machine's stay, and list the names of both
 //   /run, /var, /tmp, /dev/shm (and what is below): what is made there is in the host's folder,
-//                           with the folders that lead to it
+//                           with the folders that lead to it; these four list the host's files
+//   /proc, /sys             of the machine's only what the process is itself (shim/proc.h)
 //
-// The machine's files can be read as far as it is allowed; nothing of its is written.
+// The machine's files can be read as far as it is allowed; nothing of its is written. What it may
+// not read below /run, /var, /tmp and /dev/shm is not there.
 //
 //   const OwnPath path("/run/chrony/chronyd.pid", Use::kCreates);
 //   print(path.text());  // "/tmp/.../host1/run/chrony/chronyd.pid"
@@ -28,9 +31,13 @@ class OwnPath {
   explicit OwnPath(const char* path, Use use = Use::kReads);
   // Relative to an open folder, which does not matter for what is absolute.
   const char* text() const { return text_; }
+  // Of the host's folder and the machine's of this name, the other one: both have names. Null:
+  // there is one.
+  const char* besides() const { return besides_; }
 
  private:
   const char* text_;
+  const char* besides_ = nullptr;
   char room_[PATH_MAX];
 };
 

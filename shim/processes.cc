@@ -184,6 +184,13 @@ SIMBENCH_CALL int kill(pid_t process, int signal) {
   return static_cast<int>(ask({.call = Call::kSignal, .a = process, .b = signal}));
 }
 
+SIMBENCH_CALL int sigqueue(pid_t process, int signal, const sigval value) {
+  if (!is_simulated()) return SIMBENCH_REAL(sigqueue)(process, signal, value);
+  if (signal < 0 || signal >= NSIG || process <= 0) return refuse(EINVAL);
+  return static_cast<int>(
+      ask({.call = Call::kSignal, .a = process, .b = signal}, {&value, sizeof value}));
+}
+
 SIMBENCH_CALL int raise(int signal) {
   if (!is_simulated()) return SIMBENCH_REAL(raise)(signal);
   const long result =

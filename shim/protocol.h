@@ -89,7 +89,7 @@ enum class Call : std::uint32_t {
   kStarted,        // a: its number, b: what the machine calls it; 0: it could not be started
   kEndThread,      // b: what the machine calls the thread; there is no reply
   kExecute,        // the other threads of the process end
-  kSignal,         // a: a process, b: a signal; 0: none -> ESRCH
+  kSignal,         // a: a process, b: a signal; 0: none, data: a sigval of sigqueue() -> ESRCH
   kLookAtSignals,  // a: a process, which may have one that was made by the machine
   kFindProcess,    // a: a process -> value: what the machine calls it; b: 1: the other way round
   kWaitForWake,    // a: Deadline, b: its time, data: Lock -> ETIMEDOUT, EINTR
@@ -110,6 +110,8 @@ enum class Call : std::uint32_t {
   kStampPulses,  // fd, a: 1: the card stamps them from now on, 0: it does not -> EBUSY: its pin
                  // is not for that
   kTakeStamps,   // fd, a: how many at most -> data: int64[]; EAGAIN
+  // Files of the host's folder.
+  kLookAtFile,  // data: FileSight -> value: its number, data: when it was written to, int64
 };
 
 // When a wait ends without anything being ready.
@@ -144,6 +146,11 @@ struct Request {
   std::uint32_t size = 0;
   std::uint32_t flags = 0;  // WaitFlag
 };
+
+// The si_code of signals that the world makes for a process: of kill() and of sigqueue(). The
+// sender's number is the world's.
+inline constexpr int kByWorld = -60;
+inline constexpr int kQueuedByWorld = -61;
 
 // In a reply's error: signal timers have expired (kTakeExpirations); the process may have a signal
 // of the machine's; another thread of the host waits for real descriptors (kLocalActivity).
@@ -206,6 +213,27 @@ struct EpollItem {
   std::uint32_t reserved = 0;
   std::uint64_t data = 0;
 };
+
+// A file as the machine knows it, and the machine's time at which it was last written to; 0: the
+// file itself says when, by the host's clock.
+struct FileSight {
+  std::uint64_t device = 0;
+  std::uint64_t file = 0;
+  std::int64_t born = 0;  // a number of a file that is gone may be another's
+  std::int64_t modified = 0;
+};
+
+// Which times of files are the machine's: the kernel stamps each change, and the time of the host's
+// clock is put there later, by the shim when the program closes what it wrote, by the world at the
+// end (sim/programs/host_files.h). The kernel's note of the last change (st_ctime) is always the
+// machine's. `born` is when the machine made the host's folder; ns since 1970.
+//
+// Whether the file has changed since, as all of the host's have.
+constexpr bool is_of_host(std::int64_t born, std::int64_t changed) { return changed >= born; }
+// Whether the kernel has stamped the last writing.
+constexpr bool is_of_machine(std::int64_t born, std::int64_t modified, std::int64_t changed) {
+  return modified >= born && modified <= changed;
+}
 
 struct TimerSetting {
   std::int64_t left;      // until it expires, or the time at which it does; 0: disarmed

@@ -52,6 +52,12 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kNotIntercepted, clock_adjtime),
     SIMBENCH_REFUSED(kNotIntercepted, gettimeofday),
     SIMBENCH_REFUSED(kNotIntercepted, clock_gettime),
+    // What a program has used, and of what.
+    SIMBENCH_REFUSED(kNotIntercepted, getrusage),
+    SIMBENCH_REFUSED(kNotIntercepted, times),
+    SIMBENCH_REFUSED(kNotIntercepted, sysinfo),
+    SIMBENCH_REFUSED(kNotIntercepted, getcpu),
+    SIMBENCH_REFUSED(kNotIntercepted, sched_getaffinity),
     // Chance.
     SIMBENCH_REFUSED(kNotIntercepted, getrandom),
     // Networks.

@@ -2,15 +2,19 @@
 
 #include <errno.h>
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <sys/epoll.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
+#include <sys/sysinfo.h>
 #include <sys/time.h>
 #include <sys/timerfd.h>
+#include <sys/times.h>
 #include <sys/timex.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -156,6 +160,33 @@ bool serve_old_wait(Word number, const Word* a, Word& result) {
 bool serve_old_wait(Word /*number*/, const Word* /*arguments*/, Word& /*result*/) { return false; }
 #endif
 
+bool serve_facts(Word number, const Word* a, Word& result) {
+  switch (number) {
+    case SYS_getrusage:
+      result = as_kernel(getrusage(static_cast<__rusage_who_t>(a[0]), at<struct rusage>(a[1])));
+      return true;
+    case SYS_times:
+      result = as_kernel(times(at<struct tms>(a[0])));
+      return true;
+    case SYS_sysinfo:
+      result = as_kernel(sysinfo(at<struct sysinfo>(a[0])));
+      return true;
+    case SYS_getcpu:
+      result = as_kernel(getcpu(at<unsigned int>(a[0]), at<unsigned int>(a[1])));
+      return true;
+    case SYS_sched_getaffinity: {
+      const auto size = static_cast<std::size_t>(a[1]);
+      const auto done = sched_getaffinity(static_cast<pid_t>(a[0]), size, at<cpu_set_t>(a[2]));
+      // The kernel says how much of it it has written.
+      result =
+          done < 0 ? as_kernel(done) : static_cast<Word>(size < sizeof(Word) ? size : sizeof(Word));
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
 bool serve_process(Word number, const Word* a, Word& result) {
   const auto process = static_cast<pid_t>(a[0]);
   switch (number) {
@@ -212,7 +243,8 @@ bool serve_call(Word number, const Word* arguments, Word& result) {
   const int before = errno;
   const bool is_served =
       serve_clock(number, arguments, result) || serve_wait(number, arguments, result) ||
-      serve_old_wait(number, arguments, result) || serve_process(number, arguments, result);
+      serve_old_wait(number, arguments, result) || serve_facts(number, arguments, result) ||
+      serve_process(number, arguments, result);
   errno = before;
   return is_served;
 }

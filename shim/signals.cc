@@ -15,6 +15,7 @@
 #include "shim/link.h"
 #include "shim/own_clock.h"
 #include "shim/refused_calls.h"
+#include "shim/senders.h"
 
 namespace simbench::shim {
 namespace {
@@ -295,6 +296,7 @@ SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const times
   for (;;) {
     const timespec none{};
     const long taken = machine_call(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
+    if (taken > 0 && info != nullptr) show_sender(*info);
     if (taken > 0 || errno != EAGAIN) return static_cast<int>(taken);
     const std::uint64_t before = handled.all;
     if (ask(wait) >= 0) return refuse(EAGAIN);

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <sys/time.h>
 
+#include "shim/local.h"
 #include "shim/netlink.h"
 #include "shim/sockets.h"
 #include "shim/streams.h"
@@ -239,7 +240,7 @@ SIMBENCH_CALL int setsockopt(int fd, int level, int option, const void* value, s
 
 SIMBENCH_CALL int getsockopt(int fd, int level, int option, void* value, socklen_t* size) {
   if (!is_socket(fd) && !is_stream(fd)) {
-    return SIMBENCH_REAL(getsockopt)(fd, level, option, value, size);
+    return local_getsockopt(fd, level, option, value, size);
   }
   const int number = level == SOL_SOCKET ? get_socket_option(fd, option) : 0;
   memcpy(value, &number, *size < sizeof number ? *size : sizeof number);

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFolders = {"usr/local/sbin", "usr/local/bin", "usr/sbin",
-                                 "usr/bin",        "sbin",          "bin"};
+constexpr std::array kFolders = {"usr/local/sbin", "usr/local/bin", "usr/sbin",   "usr/bin",
+                                 "sbin",           "bin",           "lib/systemd"};
 
 #if defined(__x86_64__)
 constexpr char kMultiarch[] = "x86_64-linux-gnu";
@@ -27,8 +27,17 @@ constexpr char kMultiarch[] = "aarch64-linux-gnu";
 
 const std::map<std::string, const char*>& packages_of_programs() {
   static const std::map<std::string, const char*> packages = {
-      {"chronyd", "chrony"}, {"ntpd", "ntpsec"},     {"phc2sys", "linuxptp"},
-      {"ptp4l", "linuxptp"}, {"python3", "python3"}, {"timemaster", "linuxptp"},
+      {"chronyd", "chrony"},
+      {"ntpd", "ntpsec"},
+      {"ntpdig", "ntpsec-ntpdig"},
+      {"openntpd", "openntpd"},
+      {"phc2sys", "linuxptp"},
+      {"ptp4l", "linuxptp"},
+      {"ptpd", "ptpd"},
+      {"python3", "python3"},
+      {"rdate", "rdate"},
+      {"systemd-timesyncd", "systemd-timesyncd"},
+      {"timemaster", "linuxptp"},
       {"ts2phc", "linuxptp"}};
   return packages;
 }
@@ -50,12 +59,16 @@ std::vector<fs::path> own_folders() {
 
 std::string library_path(const std::string& root) {
   std::string result;
-  for (const char* folder : {"usr/lib", "lib"}) {
-    const fs::path path = fs::path(root) / folder / kMultiarch;
+  const auto add = [&result](const fs::path& path) {
     std::error_code ignored;
-    if (!fs::is_directory(path, ignored)) continue;
+    if (!fs::is_directory(path, ignored)) return;
     if (!result.empty()) result += ":";
     result += path.string();
+  };
+  for (const char* folder : {"usr/lib", "lib"}) {
+    const fs::path path = fs::path(root) / folder / kMultiarch;
+    add(path);
+    add(path / "systemd");
   }
   return result;
 }
@@ -86,7 +99,10 @@ std::string program_path(const std::string& word, const std::string& packages) {
   const auto add = [&folders](const std::string& root) {
     for (const char* folder : kFolders) folders.push_back(fs::path(root) / folder);
   };
-  if (!packages.empty()) add(packages);
+  if (!packages.empty()) {
+    add(packages);
+    add(packages + "/apart/" + word);
+  }
   add("/");
   for (const fs::path& folder : folders) {
     std::error_code ignored;

@@ -3,8 +3,9 @@
 // A word with a slash is an absolute path. A bare name is looked for in these folders, in order:
 //
 //   those of the environment variable SIMBENCH_PROGRAMS (absolute, separated by colons)
-//   usr/local/sbin ... bin of the folder of unpacked packages, if there is one
-//   /usr/local/sbin, /usr/local/bin, /usr/sbin, /usr/bin, /sbin, /bin
+//   usr/local/sbin ... lib/systemd of the folder of unpacked packages, if there is one, and of its
+//   folder apart/NAME
+//   /usr/local/sbin, /usr/local/bin, /usr/sbin, /usr/bin, /sbin, /bin, /lib/systemd
 //
 // PATH is not among them: a run is to be the same for whoever starts it. The program is then looked
 // at (sim/programs/program_file.h).

@@ -61,12 +61,17 @@ void Process::set_machine(pid_t machine) {
   handle_ = static_cast<int>(syscall(SYS_pidfd_open, machine, 0));
 }
 
-int Process::signal(int number) {
+int Process::signal(int number, std::int32_t sender, std::optional<std::uint64_t> value) {
   if (handle_ < 0) return ESRCH;
   // A process that is stopped would stop the world.
   if (number == SIGSTOP || number == SIGTSTP || number == SIGTTIN || number == SIGTTOU)
     return EPERM;
-  if (syscall(SYS_pidfd_send_signal, handle_, number, nullptr, 0) != 0) return errno;
+  siginfo_t info{};
+  info.si_signo = number;
+  info.si_code = value ? shim::kQueuedByWorld : shim::kByWorld;
+  info.si_pid = sender;
+  if (value) info.si_value.sival_ptr = reinterpret_cast<void*>(*value);  // NOLINT: as it came
+  if (syscall(SYS_pidfd_send_signal, handle_, number, &info, 0) != 0) return errno;
   if (number != 0) look_at_signals();
   return 0;
 }
@@ -150,6 +155,8 @@ Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest reques
       co_return take_events(request);
     case Call::kRandom:
       co_return random_bytes(request.head.a);
+    case Call::kLookAtFile:
+      co_return look_at_file(request);
     case Call::kOpenSocket:
       co_return open_socket(request.head.fd, request.head.a);
     case Call::kOpenTimer:
@@ -188,6 +195,11 @@ Process::Answer Process::random_bytes(std::int64_t count) {
   return answer;
 }
 
+Process::Answer Process::look_at_file(const ChildRequest& request) {
+  const HostFiles::Seen seen = around_.files.look(read_head<shim::FileSight>(request.data));
+  return {.value = seen.number, .data = bytes_of(seen.modified)};
+}
+
 Task<Process::Answer> Process::read_clock(std::int64_t clock, bool is_free) {
   if (clock == shim::kCardClock) {
     const CardClock::Reading card = co_await around_.card.read();
@@ -196,7 +208,8 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock, bool is_free) {
   if (!is_known(clock)) co_return Answer{.error = EINVAL};
   const TrueTime asked = around_.host.true_now();
   if (is_free) {
-    co_return Answer{.value = epoch_ns(around_.host.system_clock().read(asked))};
+    co_return Answer{.value = is_system(clock) ? epoch_ns(around_.host.system_clock().read(asked))
+                                               : nanoseconds_of(around_.host.steady_clock().now())};
   }
   std::int64_t reading = 0;
   if (is_system(clock)) {

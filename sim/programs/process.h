@@ -41,6 +41,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
+#include "sim/programs/host_files.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/host_processes.h"
 #include "sim/programs/host_streams.h"
@@ -76,6 +77,7 @@ class Process {
     CardClock& card;
     PulseDevices& pulses;
     HostProcesses& processes;
+    HostFiles& files;
     RandomStream& chance;
     std::function<void()> wake;  // the program's threads look again
   };
@@ -99,8 +101,8 @@ class Process {
   // signalled and awaited; the number of one that was started elsewhere stays its own.
   pid_t machine() const { return machine_; }
   void set_machine(pid_t machine);
-  // By the machine; returns an errno. Its threads look at it in their waits.
-  int signal(int number);
+  // By the machine, as from that process; returns an errno. Its threads look at it in their waits.
+  int signal(int number, std::int32_t sender = 1, std::optional<std::uint64_t> value = {});
   void look_at_signals();
   std::uint64_t signals() const { return signals_; }
   // After the last thread: waits until the machine knows that it has ended, for a moment.
@@ -128,6 +130,7 @@ class Process {
 
  private:
   Answer random_bytes(std::int64_t count);
+  Answer look_at_file(const ChildRequest& request);
   Task<Answer> read_clock(std::int64_t clock, bool is_free);
   Task<Answer> set_clock(std::int64_t clock, std::int64_t reading);
   Task<Answer> adjust_clock(ChildRequest request);

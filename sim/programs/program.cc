@@ -59,15 +59,18 @@ Program::Program(const Surroundings& surroundings, const Child::Settings& settin
 
 Program::~Program() {
   for (Process& process : processes_) {
-    if (process.machine() != child_.process()) process.signal(SIGKILL);
+    if (process.machine() != child_.process() && process.signal(SIGKILL) == 0) {
+      process.await_end();
+    }
     around_.processes.remove(process);
   }
   for (ProgramThread& thread : threads_) around_.processes.remove_thread(thread);
 }
 
 Process::Surroundings Program::for_processes() {
-  return {around_.host,   around_.network,   around_.kernel, around_.card,
-          around_.pulses, around_.processes, chance_,        [this] { wake_threads(); }};
+  return {around_.host,  around_.network, around_.kernel,
+          around_.card,  around_.pulses,  around_.processes,
+          around_.files, chance_,         [this] { wake_threads(); }};
 }
 
 ProgramThread& Program::add_thread(Process& process, std::int32_t number,
@@ -209,7 +212,7 @@ Task<Process::Answer> Program::answer(ProgramThread& thread, ChildRequest reques
       thread.process->is_replaced = true;
       co_return Answer{};
     case Call::kSignal:
-      co_return send_signal(thread, head);
+      co_return send_signal(thread, request);
     case Call::kLookAtSignals:
       if (Process* target = around_.processes.find(static_cast<std::int32_t>(head.a))) {
         target->look_at_signals();
@@ -284,8 +287,11 @@ Task<Process::Answer> Program::hello(ProgramThread& thread, ChildRequest request
   return process.answer(thread, std::move(request));
 }
 
-Process::Answer Program::send_signal(const ProgramThread& sender, const shim::Request& request) {
+Process::Answer Program::send_signal(const ProgramThread& sender, const ChildRequest& whole) {
+  const shim::Request& request = whole.head;
   const Process& own = *sender.process;
+  std::optional<std::uint64_t> value;
+  if (!whole.data.empty()) value = read_head<std::uint64_t>(whole.data);
   const auto number = static_cast<int>(request.b);
   const auto is_meant = [&](const Process& each) {
     if (request.a > 0) return each.number() == request.a;
@@ -299,7 +305,7 @@ Process::Answer Program::send_signal(const ProgramThread& sender, const shim::Re
   const std::vector<Process*> all = around_.processes.all();
   for (Process* each : all) {
     if (!is_meant(*each)) continue;
-    const int error = each->signal(number);
+    const int error = each->signal(number, own.number(), value);
     if (answer.error != 0) answer.error = error;
   }
   return answer;

@@ -36,6 +36,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
+#include "sim/programs/host_files.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/host_processes.h"
 #include "sim/programs/kernel_clock.h"
@@ -57,6 +58,7 @@ class Program {
     CardClock& card;
     PulseDevices& pulses;
     HostProcesses& processes;
+    HostFiles& files;
   };
 
   Program(const Surroundings& surroundings, const Child::Settings& settings);
@@ -96,7 +98,7 @@ class Program {
   Task<Answer> announce(ProgramThread& maker, ChildRequest request);
   Answer start(const ChildRequest& request);
   Task<Answer> hello(ProgramThread& thread, ChildRequest request);
-  Answer send_signal(const ProgramThread& sender, const shim::Request& request);
+  Answer send_signal(const ProgramThread& sender, const ChildRequest& request);
   Answer find_process(const shim::Request& request) const;
   Answer wake_waiting(const ProgramThread& waker, const ChildRequest& request);
   Answer requeue(const ProgramThread& waker, const ChildRequest& request);

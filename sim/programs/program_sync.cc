@@ -15,6 +15,7 @@
 #include "processes/program_endings.h"
 #include "recording/program_failure.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/host_files.h"
 #include "sim/programs/program.h"
 
 namespace simbench::sim {
@@ -42,29 +43,37 @@ struct Told {
   std::function<void(const std::vector<std::string>& notes, bool is_unset)> gone;
 };
 
+// Of a host.
+struct Folder {
+  std::string path;
+  std::string kept;  // as the user has named it; empty: it is not kept
+};
+
 // The programs of one host.
 class RunningPrograms {
  public:
-  RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, Told told)
+  RunningPrograms(SimHost& host, std::size_t hosts, std::size_t programs, Folder folder, Told told)
       : host_(host),
         hosts_(hosts),
+        folder_(std::move(folder)),
         network_(host, hosts),
         kernel_(host),
         card_(host),
         pulses_(host),
+        files_(host, folder_.path),
         endings_(host, programs),
         told_(std::move(told)) {}
   RunningPrograms(const RunningPrograms&) = delete;
   RunningPrograms& operator=(const RunningPrograms&) = delete;
   ~RunningPrograms() {
+    programs_.clear();
+    files_.stamp_all();
     const bool is_said = is_reported_unset_ || endings_.failure();
     told_.gone(endings_.notes(), host_.id() != kMaster && !kernel_.was_steered() && !is_said);
   }
 
-  // `kept`: the folder as the user has named it; empty: it is not kept.
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             const std::string& folder, std::shared_ptr<processes::RunUse> run,
-             const std::string& kept) {
+             std::shared_ptr<processes::RunUse> run) {
     const std::size_t number = programs_.size();
     const HostPlaces places = places_of(host_);
     const auto path = settings.paths.find(command.front());
@@ -72,15 +81,15 @@ class RunningPrograms {
         .command = fill(command, places),
         .program = path == settings.paths.end() ? "" : path->second,
         .environment = fill(settings.programs.environment, places),
-        .folder = folder,
+        .folder = folder_.path,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim,
         .readable = fill(settings.programs.readable, places),
         .run = std::move(run)};
     if (settings.patience) child.patience = *settings.patience;
-    logs_.push_back(kept.empty() ? "" : fmt::format("{}/{}", kept, child.log_name));
+    logs_.push_back(folder_.kept.empty() ? "" : fmt::format("{}/{}", folder_.kept, child.log_name));
     programs_.emplace_back(
-        Program::Surroundings{host_, network_, kernel_, card_, pulses_, processes_}, child);
+        Program::Surroundings{host_, network_, kernel_, card_, pulses_, processes_, files_}, child);
   }
 
   // `needed`: how long the programs take to synchronise the host. `duration`: nothing, for ever.
@@ -134,11 +143,13 @@ class RunningPrograms {
 
   SimHost& host_;
   std::size_t hosts_;
+  Folder folder_;
   HostNetwork network_;
   KernelClock kernel_;
   CardClock card_;
   PulseDevices pulses_;
   HostProcesses processes_;
+  HostFiles files_;
   std::deque<Program> programs_;
   std::vector<std::string> logs_;  // by program
   processes::ProgramEndings endings_;
@@ -192,17 +203,14 @@ std::string ProgramSync::make_folder(SimHost& host) {
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
   RunningPrograms programs(
-      own, settings_.hosts, commands.size(),
+      own, settings_.hosts, commands.size(), {.path = make_folder(own), .kept = kept_folder(own)},
       {.failed = [this](const ProgramFailure& failure) { failures_.push_back(failure); },
        .gone =
            [this, id = host.id()](const std::vector<std::string>& notes, bool is_unset) {
              notes_.insert(notes_.end(), notes.begin(), notes.end());
              if (is_unset) unset_.insert(id);
            }});
-  const std::string folder = make_folder(own);
-  for (const HostPrograms::Command& command : commands) {
-    programs.start(command, settings_, folder, run_, kept_folder(own));
-  }
+  for (const HostPrograms::Command& command : commands) programs.start(command, settings_, run_);
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
   co_await programs.run(std::max(*warm_up(), kLeastNeeded), duration);

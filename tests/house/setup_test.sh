@@ -33,6 +33,12 @@ provide() {
     libfmt-dev) prove "$1/include/fmt/core.h" ;;
     libembree-dev) prove "$1/include/embree3/rtcore.h" ;;
     libopen3d-dev) prove "$1/include/open3d/Open3D.h" ;;
+    chrony) prove "$1/sbin/chronyd" ;;
+    linuxptp) prove "$1/sbin/ptp4l" ;;
+    ntpsec) prove "$1/sbin/ntpd" ;;
+    ntpsec-ntpdig) prove "$1/bin/ntpdig" ;;
+    openntpd | ptpd | rdate) prove "$1/sbin/$2" ;;
+    systemd-timesyncd) prove "$1/../lib/systemd/systemd-timesyncd" ;;
     libboost1.81-dev)
       prove "$1/include/boost/asio/awaitable.hpp"
       echo '#define BOOST_VERSION 108100' > "$1/include/boost/version.hpp" ;;
@@ -113,6 +119,15 @@ expect_status 0
 expect_asked 'install .*libopen3d-dev'
 expect_not_asked 'install .*libembree-dev'
 
+machine "a program whose files have another's names"
+setup --with-programs
+expect_status 0
+expect_asked 'download openntpd'
+[[ -e $work/project/build/deps/apart/openntpd/usr/sbin/openntpd ]] || fail "it is not apart"
+: > "$work/asked"
+setup --with-programs
+expect_not_asked 'download openntpd'
+
 machine "an old Boost of the user's"
 mkdir -p "$work/usr/include/boost/asio"
 : > "$work/usr/include/boost/asio/awaitable.hpp"
@@ -171,4 +186,4 @@ expect_status 2
 grep -q "unknown option '--with-everything'" "$work/said" || fail "the message does not say what"
 expect_not_asked 'install'
 
-echo "setup_test: 10 cases passed"
+echo "setup_test: 11 cases passed"

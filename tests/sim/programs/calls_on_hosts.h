@@ -26,6 +26,11 @@ inline constexpr std::size_t kCallingHosts = 3;
 
 using Words = std::vector<std::string>;
 
+// A program of tests/programs.
+inline std::string test_program(const std::string& name) {
+  return std::string(SIMBENCH_PROGRAMS) + "/simbench_" + name;
+}
+
 class CallsOnHosts : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -36,7 +41,7 @@ class CallsOnHosts : public testing::Test {
                                const std::vector<scenarios::Override>& changes = {},
                                double seconds = 60) {
     std::filesystem::remove_all(folder_);
-    const std::string path = std::string(SIMBENCH_PROGRAMS) + "/simbench_" + program;
+    const std::string path = test_program(program);
     for (std::vector<Words>* commands : {&master, &slave}) {
       for (Words& each : *commands) each.insert(each.begin(), path);
     }

@@ -56,6 +56,8 @@ TEST_F(FindProgramTest, OwnFoldersComeBeforePackagesAndThoseBeforeTheSystem) {
   const std::string unpacked = copy_of_a_program("packages/usr/sbin/env");
   EXPECT_THAT(find_program("env", packages).words, ElementsAre(unpacked));
   EXPECT_THAT(find_program("env", packages + "/").words, ElementsAre(unpacked));
+  const std::string apart = copy_of_a_program("packages/apart/daemon/usr/sbin/daemon");
+  EXPECT_THAT(find_program("daemon", packages).words, ElementsAre(apart));
   const std::string own = copy_of_a_program("second/env");
   setenv(kProgramsVariable, ((folder_ / "first") + "::" + (folder_ / "second")).c_str(), 1);
   EXPECT_THAT(find_program("env", packages).words, ElementsAre(own));

@@ -31,6 +31,10 @@ TEST_F(ProcessCallsTest, ProcessesDoWhatManPagesPromise) {
               ElementsAre("", "done\n", "done\n"));
 }
 
+TEST_F(ProcessCallsTest, FilesAndNamedMemoryDoWhatManPagesPromise) {
+  EXPECT_THAT(run("file_calls", {{}}, {{}}), Each(std::string("done\n")));
+}
+
 TEST_F(ProcessCallsTest, AProgramMayGoToTheBackground) {
   EXPECT_THAT(run("child_calls", {{"echo"}}, {{"leave"}}),
               ElementsAre("", "in the background\ndone\n", "in the background\ndone\n"));

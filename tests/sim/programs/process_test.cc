@@ -87,7 +87,8 @@ class ProcessTest : public testing::Test {
     CardClock card(host);
     PulseDevices pulses(host);
     HostProcesses processes;
-    Program program({host, network, kernel, card, pulses, processes},
+    HostFiles files(host, "/no/folder");
+    Program program({host, network, kernel, card, pulses, processes, files},
                     {.command = {"program"}, .link = link});
     std::vector<Task<void>> tasks;
     tasks.push_back(kernel.run());

@@ -18,6 +18,7 @@
 
 #include "scenarios/loader.h"
 #include "tests/sim/host/service_world.h"
+#include "tests/sim/programs/calls_on_hosts.h"
 
 namespace simbench::sim {
 namespace {
@@ -31,10 +32,6 @@ constexpr std::size_t kHosts = 3;
 
 scenarios::Scenario star() {
   return scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}});
-}
-
-std::string test_program(const std::string& name) {
-  return std::string(SIMBENCH_PROGRAMS) + "/simbench_" + name;
 }
 
 class ProgramSyncTest : public testing::Test {

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -30,6 +31,7 @@
 #include "tests/nonempty.h"
 #include "tests/scratch_folder.h"
 #include "tests/sim/host/service_world.h"
+#include "tests/sim/programs/calls_on_hosts.h"
 
 namespace simbench::sim {
 
@@ -75,6 +77,22 @@ inline LeftFiles files_below(const std::string& folder) {
         .mode = status.st_mode};
   }
   return files;
+}
+
+inline void expect_same(const LeftFiles& left, const LeftFiles& again) {
+  for (const auto& [name, file] : nonempty(left)) {
+    const auto same = again.find(name);
+    ASSERT_NE(same, again.end()) << name;
+    EXPECT_EQ(same->second.content, file.content) << name;
+    EXPECT_EQ(same->second.modified_ns, file.modified_ns) << name;
+    EXPECT_EQ(same->second.mode, file.mode) << name;
+  }
+  EXPECT_EQ(again.size(), left.size());
+}
+
+// A script of tests/programs.
+inline std::string test_script(const std::string& name) {
+  return std::string(SIMBENCH_SOURCE_DIR) + "/tests/programs/" + name;
 }
 
 class RealPrograms : public testing::Test {
@@ -141,24 +159,17 @@ class RealPrograms : public testing::Test {
   Course run_twice(const ProgramSettings& programs, const scenarios::Scenario& scenario,
                    double duration_s, double bound_s = 1) {
     const Course first = run(programs, scenario, duration_s, bound_s).at(0);
-    const LeftFiles left = files_below(folder_);
+    const LeftFiles left = files_below(hosts_folder());
     std::filesystem::remove_all(folder_);
     folder_ += "_of_a_longer_name";
+    between_runs_();
     const Course second = run(programs, scenario, duration_s, bound_s).at(0);
     EXPECT_EQ(first.rms_s, second.rms_s);
-    const LeftFiles again = files_below(folder_);
-    for (const auto& [name, file] : nonempty(left)) {
-      const auto same = again.find(name);
-      EXPECT_NE(same, again.end()) << name;
-      if (same == again.end()) continue;
-      EXPECT_EQ(same->second.content, file.content) << name;
-      EXPECT_EQ(same->second.modified_ns, file.modified_ns) << name;
-      EXPECT_EQ(same->second.mode, file.mode) << name;
-    }
-    EXPECT_EQ(again.size(), left.size());
+    expect_same(left, files_below(hosts_folder()));
     return first;
   }
 
+  std::string hosts_folder() const { return folder_ + "/programs/seed1"; }
   // What all programs of all hosts have printed.
   std::string logs() const {
     std::string all;
@@ -169,9 +180,10 @@ class RealPrograms : public testing::Test {
   }
   // A file of a host's, or what its first program has printed.
   std::string file(std::size_t host, const std::string& name) const {
-    return content(folder_ + "/programs/seed1/host" + std::to_string(host) + "/" + name);
+    return content(hosts_folder() + "/host" + std::to_string(host) + "/" + name);
   }
 
+  std::function<void()> between_runs_ = [] {};
   std::string folder_ =
       testing::TempDir() + "/real" + testing::UnitTest::GetInstance()->current_test_info()->name();
 
