@@ -16,6 +16,7 @@
 
 #include <initializer_list>
 
+#include "shim/descriptor_errors.h"
 #include "shim/link.h"
 #include "shim/own_clock.h"
 #include "shim/refused_calls.h"
@@ -424,6 +425,7 @@ SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
     return SIMBENCH_REAL(timerfd_settime)(fd, flags & TFD_TIMER_ABSTIME, &machine, before);
   }
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_settime)(fd, flags, setting, before);
+  if (kind_of(fd) != Kind::kTimer) return refuse_descriptor(fd, EINVAL);
   const bool is_absolute = (flags & TFD_TIMER_ABSTIME) != 0;
   return set_world_timer({.call = Call::kSetTimer, .fd = fd, .a = is_absolute ? 1 : 0}, *setting,
                          before);
@@ -431,6 +433,7 @@ SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
 
 SIMBENCH_CALL int timerfd_gettime(int fd, itimerspec* setting) {
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_gettime)(fd, setting);
+  if (kind_of(fd) != Kind::kTimer) return refuse_descriptor(fd, EINVAL);
   return query_world_timer({.call = Call::kQueryTimer, .fd = fd}, *setting);
 }
 

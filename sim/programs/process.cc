@@ -118,6 +118,8 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kAccept:
     case Call::kShutDown:
     case Call::kJoin:
+    case Call::kFilterArrivals:
+    case Call::kCountArrivals:
       co_return of_socket(request);
     case Call::kSetTimer:
     case Call::kQueryTimer:
@@ -141,7 +143,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kRandom:
       co_return random_bytes(request.head.a);
     case Call::kOpenSocket:
-      co_return open_socket(request.head.fd, request.head.a);
+      co_return open_socket(request);
     case Call::kOpenTimer:
       co_return open_timer(request.head.fd, request.head.a);
     case Call::kClose:
@@ -163,7 +165,9 @@ shim::Identity Process::identity() const {
           .most_card_rate =
               host_.nic() != nullptr
                   ? static_cast<std::int32_t>(std::lround(host_.nic()->max_frequency_ppb()))
-                  : 0};
+                  : 0,
+          .cards = network_.cables().cards(),
+          .carriers = network_.cables().carriers()};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {
@@ -313,11 +317,8 @@ Process::Answer Process::take_expirations() {
 
 std::int16_t Process::readiness(const shim::Interest& interest) {
   if (const auto found = sockets_.find(interest.fd); found != sockets_.end()) {
-    const UdpSocket& socket = found->second;
-    const int error = socket.departed.empty() ? 0 : POLLERR;
-    const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
-    const int ready = (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent;
-    return static_cast<std::int16_t>((ready & interest.events) | error);
+    constexpr int kAlways = POLLERR | POLLHUP;
+    return static_cast<std::int16_t>(readiness_of(found->second) & (interest.events | kAlways));
   }
   if (const auto found = streams_.find(interest.fd); found != streams_.end()) {
     constexpr int kAlways = POLLERR | POLLHUP;

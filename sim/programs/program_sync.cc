@@ -60,6 +60,7 @@ class RunningPrograms {
       tasks.push_back(network_.streams().pump(peer));
     }
     tasks.push_back(network_.stamp_departures());
+    tasks.push_back(network_.answer_refused());
     tasks.push_back(kernel_.run());
     for (Process& process : processes_) tasks.push_back(serve(process, on_end));
     if (duration) tasks.push_back(stop_after(*duration));

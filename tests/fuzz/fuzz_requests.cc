@@ -44,6 +44,7 @@ Task<void> run(SimHost& host, int link, std::string& note) {
   std::vector<Task<void>> tasks;
   tasks.push_back(kernel.run());
   tasks.push_back(network.stamp_departures());
+  tasks.push_back(network.answer_refused());
   tasks.push_back(serve(process, note));
   co_await simbench::join_all(std::move(tasks));
 }
