@@ -98,10 +98,9 @@ int keep_group_interface(int fd, bool is_v6, std::uint32_t interface) {
   (is_v6 ? state.group_interface6 : state.group_interface) = interface;
   if (!is_socket(fd)) return 0;
   const auto option = static_cast<std::int64_t>(SocketOption::kGroupInterface);
-  return static_cast<int>(ask({.call = Call::kSetOption,
-                               .fd = fd,
-                               .a = option | (is_v6 ? kOfIpv6 : 0),
-                               .b = interface}));
+  const Request request{
+      .call = Call::kSetOption, .fd = fd, .a = option | (is_v6 ? kOfIpv6 : 0), .b = interface};
+  return ask(request) < 0 ? -1 : 0;
 }
 
 // Where multicasts leave.

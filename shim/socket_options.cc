@@ -40,7 +40,7 @@ std::uint8_t owner_of(int fd) {
 
 int tell_world(int fd, SocketOption option, std::int64_t value, bool is_of_ipv6 = false) {
   const std::int64_t named = static_cast<std::int64_t>(option) | (is_of_ipv6 ? kOfIpv6 : 0);
-  return static_cast<int>(ask({.call = Call::kSetOption, .fd = fd, .a = named, .b = value}));
+  return ask({.call = Call::kSetOption, .fd = fd, .a = named, .b = value}) < 0 ? -1 : 0;
 }
 
 // Stamps.

@@ -110,6 +110,7 @@ ssize_t stream_send(int fd, const msghdr& message, int flags) {
 
 ssize_t stream_receive(int fd, msghdr& message, int flags) {
   const bool wants_all = (flags & MSG_WAITALL) != 0;
+  message.msg_namelen = 0;  // the peer is known
   ssize_t received = 0;
   for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
     const iovec& piece = message.msg_iov[i];

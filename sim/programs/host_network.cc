@@ -127,7 +127,6 @@ Route HostNetwork::route_of(const UdpSocket& socket, const shim::Departure& depa
   if (is_ipv4 && socket.only_ipv6) return {.error = ENETUNREACH};
   const shim::IpAddress& local = socket.local.host;
   const bool states_host = !shim::is_any(local);
-  if (socket.family == AF_INET6 && !is_ipv4 && shim::is_ipv4(local)) return {.error = EAFNOSUPPORT};
   if (states_host && is_ipv4 && !shim::is_ipv4(local)) return {.error = ENETUNREACH};
   if (Routes::is_broadcast(to) && !socket.may_broadcast) return {.error = EACCES};
   Routes::Wish wish{.interface = socket.interface,
@@ -136,6 +135,7 @@ Route HostNetwork::route_of(const UdpSocket& socket, const shim::Departure& depa
   if (departure.source.scope != 0) wish.interface = departure.source.scope;
   Route route = routes_.to(departure.to, wish);
   if (route.error != 0) return route;
+  if (!is_ipv4 && shim::is_ipv4(local)) return {.error = EAFNOSUPPORT};
   if (states_host) route.source = local;
   const bool states_source = departure.source.family != AF_UNSPEC &&
                              !shim::is_any(departure.source.host);

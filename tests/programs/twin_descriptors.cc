@@ -16,7 +16,7 @@ namespace {
 
 using namespace twin;
 
-void call_with(int fd) {
+void call_with(int fd, bool is_epoll = false) {
   char bytes[8] = "";
   const Name to("127.0.0.1", 4000);
   Name name;
@@ -51,6 +51,7 @@ void call_with(int fd) {
   say("recvmmsg", recvmmsg(fd, &several, 1, MSG_DONTWAIT, nullptr));
   say("timerfd_settime", timerfd_settime(fd, 0, &setting, nullptr));
   say("timerfd_gettime", timerfd_gettime(fd, &setting));
+  if (is_epoll) return;  // its requests differ from kernel to kernel
   say("SIOCGIFINDEX", ioctl(fd, SIOCGIFINDEX, &request));
   say("FIONREAD", ioctl(fd, FIONREAD, &number));
 }
@@ -76,7 +77,7 @@ void call_all_kinds() {
   close(timer);
   tell("descriptor", "an epoll");
   const int epoll = epoll_create1(0);
-  call_with(epoll);
+  call_with(epoll, true);
   close(epoll);
 }
 
