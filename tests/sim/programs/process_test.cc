@@ -289,7 +289,8 @@ class Hostile {
       case Call::kFilterArrivals:
         return filter();
       case Call::kSend:
-        return raw(shim::Departure{.to = address(), .source = address()}) + std::string(below(one_in(5) ? shim::kMostData : 100), 'x');
+        return raw(shim::Departure{.to = address(), .source = address()}) +
+               std::string(below(one_in(5) ? shim::kMostData : 100), 'x');
       default:
         return one_in(10) ? std::string(below(200), 'x') : "";
     }

@@ -83,8 +83,8 @@ std::vector<std::string> in_world(const std::string& program) {
                     .shim = SIMBENCH_SHIM,
                     .log_folder = folder,
                     .hosts = 2});
-  ServiceWorld world(scenarios::load_scenario(
-      "6host_star", {{"/hosts/count", "2"}, {"/cameras/count", "2"}}));
+  ServiceWorld world(
+      scenarios::load_scenario("6host_star", {{"/hosts/count", "2"}, {"/cameras/count", "2"}}));
   world.start(sync);
   world.run_until(60);
   std::vector<std::string> said = lines_of(
@@ -100,8 +100,8 @@ TEST_P(Twins, SayTheSame) {
   const std::vector<std::string> world = in_world(GetParam());
   ASSERT_GT(machine.size(), 50U) << "the program has run";
   for (std::size_t i = 0; i < std::min(machine.size(), world.size()); ++i) {
-    EXPECT_EQ(world[i], machine[i]) << "line " << i + 1 << ", after \"" << machine[i == 0 ? 0 : i - 1]
-                                    << "\"";
+    EXPECT_EQ(world[i], machine[i])
+        << "line " << i + 1 << ", after \"" << machine[i == 0 ? 0 : i - 1] << "\"";
   }
   EXPECT_EQ(world.size(), machine.size());
 }
