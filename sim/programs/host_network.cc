@@ -163,6 +163,7 @@ int HostNetwork::connect(UdpSocket& socket, Address peer) {
   }
   peer.family = static_cast<std::uint16_t>(socket.family);
   socket.peer = scoped(peer, route.interface);
+  if (shim::needs_scope(peer.host)) socket.interface = route.interface;
   if (shim::is_any(socket.local.host)) {
     socket.local.host = route.source;
     socket.local = scoped(socket.local, route.interface);
@@ -318,6 +319,16 @@ QueuedDatagram HostNetwork::arrived(const WirePacket& packet, std::uint32_t inte
           .payload = packet.payload};
 }
 
+// A message to a group that has no hops left, or is for the host's own interface. Linux drops one of
+// IPv6 without hops only where the host has heard it itself (ip6_finish_output2()).
+bool HostNetwork::stays_on_host(const PacketHead& head, bool loops) const {
+  const Address& to = head.to;
+  if (shim::is_ipv4(to.host)) return head.hops == 0;
+  const bool is_of_interface = (to.host.bytes[1] & 0x0F) <= 1;
+  const Address group{.host = to.host, .scope = kFirstCard, .family = AF_INET6};
+  return is_of_interface || (head.hops == 0 && loops && joined(group) > 0);
+}
+
 Task<void> HostNetwork::transmit(UdpSocket& socket, const Route& route, WirePacket packet,
                                  unsigned stamps) {
   QueuedDatagram told = arrived(packet, route.interface);
@@ -332,14 +343,12 @@ Task<void> HostNetwork::transmit(UdpSocket& socket, const Route& route, WirePack
     co_return;
   }
   const shim::IpAddress& to = packet.head.to.host;
-  const bool is_broadcast = Routes::is_broadcast(to);
-  const bool stays = route.group && !is_broadcast &&
-                     (packet.head.hops == 0 || (to.bytes[0] == 0xFF && (to.bytes[1] & 0xF) == 1));
-  const bool loops =
-      route.group &&
-      (is_broadcast || stays || socket.options(shim::is_ipv4(to)).hears_itself);
-  // What it hears is of the first fragment alone.
   const bool is_ipv4 = shim::is_ipv4(to);
+  const bool is_broadcast = Routes::is_broadcast(to);
+  const bool loops =
+      route.group && (is_broadcast || socket.options(is_ipv4).hears_itself);
+  const bool stays = route.group && !is_broadcast && stays_on_host(packet.head, loops);
+  // What it hears is of the first fragment alone.
   if (told.payload.size() > most_in_one_packet(is_ipv4, shim::kLinkMtu)) {
     told.payload.resize(most_in_first_fragment(is_ipv4));
   }

@@ -119,6 +119,7 @@ class HostNetwork {
                  std::size_t size) const;
   static WirePacket packet_for(const UdpSocket& socket, const shim::Departure& departure,
                            const Route& route, Bytes payload);
+  bool stays_on_host(const PacketHead& head, bool loops) const;
   Task<void> transmit(UdpSocket& socket, const Route& route, WirePacket packet, unsigned stamps);
 
   int joined(const shim::Address& group) const;

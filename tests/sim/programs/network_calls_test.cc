@@ -74,6 +74,12 @@ TEST_F(NetworkCallsTest, GroupsDoWhatManPagesPromise) {
   EXPECT_EQ(said[1], "");
 }
 
+TEST_F(NetworkCallsTest, Ipv6DoesWhatManPagesPromise) {
+  const std::vector<std::string> said = run("ipv6_calls", {{"check"}}, {{"answer"}});
+  EXPECT_EQ(said[0], "done\n");
+  EXPECT_EQ(said[1], "");
+}
+
 TEST_F(NetworkCallsTest, InterfacesAndNamesAreThoseOfTheWorld) {
   for (const char* stamps : {"false", "true"}) {
     const std::vector<std::string> said =
