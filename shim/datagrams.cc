@@ -1,14 +1,14 @@
 // Messages of datagram sockets: what programs say and hear beside the payload.
+#include <arpa/inet.h>
 #include <errno.h>
+#include <linux/errqueue.h>
 #include <linux/if_packet.h>
+#include <linux/net_tstamp.h>
 #include <netinet/in.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <time.h>
-
-#include <linux/errqueue.h>
-#include <linux/net_tstamp.h>
 
 #include "shim/sockets.h"
 
@@ -183,8 +183,8 @@ void add_ipv4_facts(int fd, Control& control) {
     const Address& own = has_left || is_group(arrival.to.host) ? arrival.from : arrival.to;
     in_pktinfo to{};
     to.ipi_ifindex = static_cast<int>(arrival.interface);
-    to.ipi_spec_dst.s_addr = htonl(has_left || !is_group(arrival.to.host) ? number_in(own.host)
-                                                                          : identity().address);
+    to.ipi_spec_dst.s_addr =
+        htonl(has_left || !is_group(arrival.to.host) ? number_in(own.host) : identity().address);
     to.ipi_addr.s_addr = htonl(number_in(arrival.to.host));
     control.add(IPPROTO_IP, IP_PKTINFO, to);
   }

@@ -47,8 +47,8 @@ bool find_number(const char* name, FoundHost& found) {
   }
   char text[INET6_ADDRSTRLEN + 1] = "";
   const char* percent = strchr(name, '%');
-  const std::size_t size = percent != nullptr ? static_cast<std::size_t>(percent - name)
-                                              : strlen(name);
+  const std::size_t size =
+      percent != nullptr ? static_cast<std::size_t>(percent - name) : strlen(name);
   if (size >= sizeof text) return false;
   memcpy(text, name, size);
   if (inet_pton(AF_INET6, text, found.addresses[0].bytes) != 1) return false;
@@ -137,9 +137,8 @@ struct SocketKind {
   int type;
   int protocol;
 };
-constexpr SocketKind kKinds[] = {{kOfTcp, SOCK_STREAM, IPPROTO_TCP},
-                                 {kOfUdp, SOCK_DGRAM, IPPROTO_UDP},
-                                 {kOfNone, SOCK_RAW, 0}};
+constexpr SocketKind kKinds[] = {
+    {kOfTcp, SOCK_STREAM, IPPROTO_TCP}, {kOfUdp, SOCK_DGRAM, IPPROTO_UDP}, {kOfNone, SOCK_RAW, 0}};
 constexpr int kMostEntries = kMostAddresses * 3;
 
 // What getaddrinfo() gave out.
@@ -253,8 +252,8 @@ SIMBENCH_CALL int getaddrinfo(const char* node, const char* service, const addri
   if (!is_simulated()) return SIMBENCH_REAL(getaddrinfo)(node, service, hints, result);
   const addrinfo wanted = hints != nullptr ? *hints : addrinfo{};
   if (node == nullptr && service == nullptr) return EAI_NONAME;
-  const bool is_known = wanted.ai_family == AF_UNSPEC || wanted.ai_family == AF_INET ||
-                        wanted.ai_family == AF_INET6;
+  const bool is_known =
+      wanted.ai_family == AF_UNSPEC || wanted.ai_family == AF_INET || wanted.ai_family == AF_INET6;
   if (!is_known) return EAI_FAMILY;
   std::uint16_t port = 0;
   unsigned kinds = kOfTcp | kOfUdp | kOfNone;

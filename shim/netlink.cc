@@ -1,7 +1,7 @@
 #include "shim/netlink.h"
 
-#include <errno.h>
 #include <arpa/inet.h>
+#include <errno.h>
 #include <linux/if.h>
 #include <linux/if_addr.h>
 #include <linux/netlink.h>

@@ -32,10 +32,10 @@ enum OptionOwner : std::uint8_t {
 };
 
 enum class OptionForm : std::uint8_t {
-  kNumber,    // between `least` and `most`, else EINVAL
-  kSwitch,    // any number; 0 or 1 is kept
-  kDefault,   // a number, -1 for what it began with
-  kRoom,      // twice the number, between `least` and `most`
+  kNumber,   // between `least` and `most`, else EINVAL
+  kSwitch,   // any number; 0 or 1 is kept
+  kDefault,  // a number, -1 for what it began with
+  kRoom,     // twice the number, between `least` and `most`
 };
 
 struct OptionRule {

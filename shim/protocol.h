@@ -47,8 +47,8 @@ enum class Call : std::uint32_t {
   kSetOption,    // fd, a: SocketOption, and kOfIpv6 if it is of that level, b: value
   kName,         // fd -> data: Address
   kPeerName,     // fd -> data: Address; ENOTCONN
-  kSend,     // fd, a: StampKind as bits of this departure, -1: the socket's, data: Departure, then the
-             // payload -> value: of a stream, how much of it was taken
+  kSend,  // fd, a: StampKind as bits of this departure, -1: the socket's, data: Departure, then the
+          // payload -> value: of a stream, how much of it was taken
   kReceive,  // fd, a: ReceiveFlag -> data: Arrival, then payload; ESHUTDOWN: nothing more comes;
              // of a stream, b: how many at most -> data: bytes, none at its end
   kClose,    // fd
@@ -211,7 +211,7 @@ struct Arrival {
   std::uint32_t length = 0;           // of the payload, also where less of it follows
   std::uint32_t number = 0;  // of the stamped datagrams that the socket sent; 0 for arrivals
   std::uint32_t interface = 0;
-  std::uint32_t info = 0;  // ee_info
+  std::uint32_t info = 0;   // ee_info
   std::uint16_t error = 0;  // ee_errno; 0 for arrivals
   std::uint8_t origin = 0;  // SO_EE_ORIGIN_...; 0 for arrivals
   std::uint8_t hops = 0;    // that it may go on for

@@ -24,8 +24,8 @@ bool find_group_interface(int number, std::uint32_t host, std::uint32_t& found) 
 }
 
 int join(int fd, bool joins, const Address& group, int kind = 0) {
-  return static_cast<int>(ask({.call = Call::kJoin, .fd = fd, .a = joins ? 1 : 0, .b = kind},
-                              {&group, sizeof group}));
+  return static_cast<int>(
+      ask({.call = Call::kJoin, .fd = fd, .a = joins ? 1 : 0, .b = kind}, {&group, sizeof group}));
 }
 
 // struct ip_mreq has the first two members.
@@ -114,8 +114,8 @@ int set_group_interface(int fd, const void* value, socklen_t size) {
     return refuse(EINVAL);
   }
   std::uint32_t interface = 0;
-  const bool is_known = find_group_interface(
-      wanted.imr_ifindex, ntohl(wanted.imr_address.s_addr), interface);
+  const bool is_known =
+      find_group_interface(wanted.imr_ifindex, ntohl(wanted.imr_address.s_addr), interface);
   return is_known ? keep_group_interface(fd, false, interface) : refuse(EADDRNOTAVAIL);
 }
 

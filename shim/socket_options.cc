@@ -280,8 +280,8 @@ SIMBENCH_CALL int setsockopt(int fd, int level, int option, const void* value, s
   }
   if (is_netlink(fd) && level == SOL_NETLINK) return 0;
   const int result = level == SOL_SOCKET ? set_socket_option(fd, option, value, size)
-                     : is_netlink(fd)  ? kIsNone
-                                       : set_group_option(fd, level, option, value, size);
+                     : is_netlink(fd)    ? kIsNone
+                                         : set_group_option(fd, level, option, value, size);
   if (result != kIsNone) return result;
   // With the right to pass a limit that there is not.
   if (level == SOL_SOCKET && option == SO_RCVBUFFORCE) option = SO_RCVBUF;

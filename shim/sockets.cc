@@ -71,8 +71,7 @@ int open_socket(int domain, int type, int protocol, int flags) {
                                  (flags & SOCK_NONBLOCK) != 0, (flags & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
   const int known = is_stream ? IPPROTO_TCP : IPPROTO_UDP;
-  state_of(fd) = {
-      .family = domain, .type = type, .protocol = domain == AF_PACKET ? 0 : known};
+  state_of(fd) = {.family = domain, .type = type, .protocol = domain == AF_PACKET ? 0 : known};
   forget_options(fd);
   std::int64_t kind = domain;
   if (domain == AF_PACKET) kind |= std::int64_t{ntohs(static_cast<std::uint16_t>(protocol))} << 16;
@@ -118,6 +117,7 @@ SIMBENCH_CALL int connect(int fd, const sockaddr* name, socklen_t size) {
   if (is_local(fd)) return local_connect(fd, name, size);
   if (is_netlink(fd)) return 0;
   if (!is_of_network(fd)) return SIMBENCH_REAL(connect)(fd, name, size);
+  if (family_of(fd) == AF_PACKET) return refuse(EOPNOTSUPP);
   Address address{};
   if (!read_address(fd, NameUse::kConnect, name, size, address)) return -1;
   if (is_stream(fd)) return stream_connect(fd, address);

@@ -80,8 +80,7 @@ int stream_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
         open_descriptor(Kind::kStream, (flags & SOCK_NONBLOCK) != 0, (flags & SOCK_CLOEXEC) != 0);
     if (accepted < 0) return -1;
     if (ask_for({.call = Call::kAccept, .fd = fd, .a = number_of(accepted)}, peer) >= 0) {
-      state_of(accepted) = {
-          .family = peer.family, .type = SOCK_STREAM, .protocol = IPPROTO_TCP};
+      state_of(accepted) = {.family = peer.family, .type = SOCK_STREAM, .protocol = IPPROTO_TCP};
       forget_options(accepted);
       write_address(peer, name, size);
       return accepted;

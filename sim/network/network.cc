@@ -485,16 +485,17 @@ void SimNetwork::report(const Segment& segment, std::optional<TrueTime> arrival)
   MessageId id = segment.first;
   const bool is_stream = path.transport == Transport::kStream;
   for (const Bytes& message : segment.messages) {
-    observer_->on_message({.from = path.from,
-                           .to = path.to,
-                           .stream = is_stream,
-                           .id = id++,
-                           .bytes = is_stream ? message.size() : static_cast<std::size_t>(segment.bytes),
-                           .left = segment.left,
-                           .at_switch = segment.at_switch,
-                           .arrived = arrival.value_or(TrueTime{}),
-                           .lost = !arrival,
-                           .copy = !segment.is_counted});
+    observer_->on_message(
+        {.from = path.from,
+         .to = path.to,
+         .stream = is_stream,
+         .id = id++,
+         .bytes = is_stream ? message.size() : static_cast<std::size_t>(segment.bytes),
+         .left = segment.left,
+         .at_switch = segment.at_switch,
+         .arrived = arrival.value_or(TrueTime{}),
+         .lost = !arrival,
+         .copy = !segment.is_counted});
   }
 }
 

@@ -1,12 +1,12 @@
 // Where the cables of a host's cards lead.
 //
-// All hosts are at a switch (sim/network/network.h), to which eth0 is wired. One that knows PTP as a
-// transparent clock (/network/switch_clock) stands for the cables of a chain or tree of time-aware
-// stations, as for the algorithms (algorithms/host_sync/ptp/gptp.h): each host has a card for each
-// neighbour then, the one that it follows (/hosts/follows) first and those that follow it after
-// that, in order of their numbers. The master's eth0 leads to the first that follows it. All hosts
-// have as many cards as the busiest needs, 16 at most; those beyond a host's neighbours have no
-// carrier.
+// All hosts are at a switch (sim/network/network.h), to which eth0 is wired. One that knows PTP as
+// a transparent clock (/network/switch_clock) stands for the cables of a chain or tree of
+// time-aware stations, as for the algorithms (algorithms/host_sync/ptp/gptp.h): each host has a
+// card for each neighbour then, the one that it follows (/hosts/follows) first and those that
+// follow it after that, in order of their numbers. The master's eth0 leads to the first that
+// follows it. All hosts have as many cards as the busiest needs, 16 at most; those beyond a host's
+// neighbours have no carrier.
 //
 // What is sent to one neighbour alone takes a card's cable: frames to an address that no bridge
 // forwards by eth0, everything by the others.

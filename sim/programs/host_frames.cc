@@ -44,8 +44,7 @@ shim::Address packet_address(const std::array<std::uint8_t, 6>& card, std::uint8
                              std::uint32_t interface, std::uint16_t protocol) {
   shim::PacketAddress host{.kind = kind};
   std::memcpy(host.card, card.data(), card.size());
-  return {
-      .host = shim::packed(host), .scope = interface, .port = protocol, .family = AF_PACKET};
+  return {.host = shim::packed(host), .scope = interface, .port = protocol, .family = AF_PACKET};
 }
 
 std::uint16_t protocol_of(const Bytes& frame) {
@@ -226,13 +225,13 @@ Task<int> HostFrames::send(UdpSocket& socket, shim::Address to, Bytes data, unsi
   const std::uint32_t card = interface - kFirstCard;
   if ((cables_.carriers() & (1U << card)) == 0) co_return 0;  // nothing leaves
   const PacketSender::Way way = way_of(card, target);
-  WirePacket packet{.head = {.kind = PacketKind::kFrame,
-                         .is_on_link = card > 0 || is_for_link(target) ? std::uint8_t{1}
-                                                                       : std::uint8_t{0}},
-                .payload = Bytes(seen.frame.begin() + kLinkHead, seen.frame.end())};
+  WirePacket packet{
+      .head = {.kind = PacketKind::kFrame,
+               .is_on_link = card > 0 || is_for_link(target) ? std::uint8_t{1} : std::uint8_t{0}},
+      .payload = Bytes(seen.frame.begin() + kLinkHead, seen.frame.end())};
   // The protocol as it is stated, which may be a length.
-  const std::uint16_t stated = boost::endian::load_big_u16(
-      reinterpret_cast<const unsigned char*>(seen.frame.data()) + 12);
+  const std::uint16_t stated =
+      boost::endian::load_big_u16(reinterpret_cast<const unsigned char*>(seen.frame.data()) + 12);
   packet.head.from = packet_address(seen.from, 0, interface, stated);
   packet.head.to = packet_address(target, 0, interface, stated);
   co_await sender_.send(socket.number, way, std::move(packet), stamps, std::move(told));

@@ -40,8 +40,8 @@ bool is_for(const UdpSocket& socket, const shim::Arrival& arrival) {
   const shim::IpAddress& local = socket.local.host;
   const bool takes_any = shim::is_small(local, 0) || (is_ipv4 && shim::is_any(local));
   if (!takes_any && local != to) return false;
-  return !socket.peer || (socket.peer->host == arrival.from.host &&
-                          socket.peer->port == arrival.from.port);
+  return !socket.peer ||
+         (socket.peer->host == arrival.from.host && socket.peer->port == arrival.from.port);
 }
 
 // How much of the addresses it states (compute_score()).
@@ -137,8 +137,8 @@ Route HostNetwork::route_of(const UdpSocket& socket, const shim::Departure& depa
   if (route.error != 0) return route;
   if (!is_ipv4 && shim::is_ipv4(local)) return {.error = EAFNOSUPPORT};
   if (states_host) route.source = local;
-  const bool states_source = departure.source.family != AF_UNSPEC &&
-                             !shim::is_any(departure.source.host);
+  const bool states_source =
+      departure.source.family != AF_UNSPEC && !shim::is_any(departure.source.host);
   if (states_source && !routes_.is_own(departure.source.host)) return {.error = EINVAL};
   if (states_source) route.source = departure.source.host;
   const bool leaves = route.peer || route.group;
@@ -203,9 +203,8 @@ void HostNetwork::count_member(const Address& group, int change) {
   if (found->sockets == 0) {
     members_.erase(found);
     // Two groups of IPv6 may share an Ethernet address.
-    const bool is_last = std::ranges::none_of(members_, [&](const Membership& each) {
-      return Routes::group_of(each.group.host) == id;
-    });
+    const bool is_last = std::ranges::none_of(
+        members_, [&](const Membership& each) { return Routes::group_of(each.group.host) == id; });
     if (is_last) groups.leave(id, host_.id());
   } else if (is_first) {
     groups.join(id, host_.id());
@@ -225,9 +224,8 @@ int HostNetwork::join(UdpSocket& socket, bool joins, int kind, Address group) {
 int HostNetwork::join_group(UdpSocket& socket, Address group) {
   if (std::ranges::find(socket.groups, group) != socket.groups.end()) return EADDRINUSE;
   const bool is_ipv4 = shim::is_ipv4(group.host);
-  const auto others = std::ranges::count_if(socket.groups, [&](const Address& each) {
-    return shim::is_ipv4(each.host) == is_ipv4;
-  });
+  const auto others = std::ranges::count_if(
+      socket.groups, [&](const Address& each) { return shim::is_ipv4(each.host) == is_ipv4; });
   if (static_cast<std::size_t>(others) == (is_ipv4 ? kMostGroups : kMostIpv6Groups)) {
     return is_ipv4 ? ENOBUFS : ENOMEM;
   }
@@ -244,8 +242,8 @@ int HostNetwork::leave_group(UdpSocket& socket, const Address& group) {
 
 // Sending.
 
-int HostNetwork::check_size(UdpSocket& socket, const shim::Departure& departure,
-                            const Route& route, std::size_t size) const {
+int HostNetwork::check_size(UdpSocket& socket, const shim::Departure& departure, const Route& route,
+                            std::size_t size) const {
   const bool is_ipv4 = shim::is_ipv4(departure.to.host);
   if (size > most_payload(is_ipv4)) return EMSGSIZE;
   const IpOptions& options = socket.options(is_ipv4);
@@ -268,14 +266,14 @@ int HostNetwork::check_size(UdpSocket& socket, const shim::Departure& departure,
 }
 
 WirePacket HostNetwork::packet_for(const UdpSocket& socket, const shim::Departure& departure,
-                               const Route& route, Bytes payload) {
+                                   const Route& route, Bytes payload) {
   const IpOptions& options = socket.options(shim::is_ipv4(departure.to.host));
-  WirePacket packet{.head = {.hops = route.group ? options.group_hops : options.hops,
-                         .traffic_class = options.traffic_class,
-                         .from = scoped({.host = route.source, .port = socket.local.port},
-                                        route.interface),
-                         .to = scoped(departure.to, route.interface)},
-                .payload = std::move(payload)};
+  WirePacket packet{
+      .head = {.hops = route.group ? options.group_hops : options.hops,
+               .traffic_class = options.traffic_class,
+               .from = scoped({.host = route.source, .port = socket.local.port}, route.interface),
+               .to = scoped(departure.to, route.interface)},
+      .payload = std::move(payload)};
   if (shim::is_any(packet.head.to.host)) packet.head.to.host = route.source;
   return packet;
 }
@@ -319,8 +317,8 @@ QueuedDatagram HostNetwork::arrived(const WirePacket& packet, std::uint32_t inte
           .payload = packet.payload};
 }
 
-// A message to a group that has no hops left, or is for the host's own interface. Linux drops one of
-// IPv6 without hops only where the host has heard it itself (ip6_finish_output2()).
+// A message to a group that has no hops left, or is for the host's own interface. Linux drops one
+// of IPv6 without hops only where the host has heard it itself (ip6_finish_output2()).
 bool HostNetwork::stays_on_host(const PacketHead& head, bool loops) const {
   const Address& to = head.to;
   if (shim::is_ipv4(to.host)) return head.hops == 0;
@@ -345,8 +343,7 @@ Task<void> HostNetwork::transmit(UdpSocket& socket, const Route& route, WirePack
   const shim::IpAddress& to = packet.head.to.host;
   const bool is_ipv4 = shim::is_ipv4(to);
   const bool is_broadcast = Routes::is_broadcast(to);
-  const bool loops =
-      route.group && (is_broadcast || socket.options(is_ipv4).hears_itself);
+  const bool loops = route.group && (is_broadcast || socket.options(is_ipv4).hears_itself);
   const bool stays = route.group && !is_broadcast && stays_on_host(packet.head, loops);
   // What it hears is of the first fragment alone.
   if (told.payload.size() > most_in_one_packet(is_ipv4, shim::kLinkMtu)) {
@@ -420,8 +417,8 @@ bool HostNetwork::may_answer(PeerId peer, bool is_ipv4) {
   const SteadyTime now = host_.steady_clock().now();
   Allowance& allowance = allowances_[{peer, is_ipv4}];
   const double a_second = is_ipv4 ? 1 : 4;
-  allowance.answers = std::min(
-      kAtOnce, allowance.answers + a_second * to_seconds(now - allowance.since));
+  allowance.answers =
+      std::min(kAtOnce, allowance.answers + a_second * to_seconds(now - allowance.since));
   allowance.since = now;
   if (allowance.answers < 1) return false;
   allowance.answers -= 1;

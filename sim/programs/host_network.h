@@ -118,7 +118,7 @@ class HostNetwork {
   int check_size(UdpSocket& socket, const shim::Departure& departure, const Route& route,
                  std::size_t size) const;
   static WirePacket packet_for(const UdpSocket& socket, const shim::Departure& departure,
-                           const Route& route, Bytes payload);
+                               const Route& route, Bytes payload);
   bool stays_on_host(const PacketHead& head, bool loops) const;
   Task<void> transmit(UdpSocket& socket, const Route& route, WirePacket packet, unsigned stamps);
 

@@ -94,8 +94,7 @@ Task<int> HostStreams::connect(StreamSocket& stream, shim::Address peer) {
   if (!is_ipv4 && stream.family == AF_INET) co_return EAFNOSUPPORT;
   if (is_ipv4 && stream.only_ipv6) co_return ENETUNREACH;
   if (states_host && is_ipv4 != shim::is_ipv4(stream.local.host)) co_return EAFNOSUPPORT;
-  const Route route =
-      routes_.to(peer, {.interface = stream.interface, .must_name_link = true});
+  const Route route = routes_.to(peer, {.interface = stream.interface, .must_name_link = true});
   if (route.error != 0 || route.group) co_return route.error != 0 ? route.error : ENETUNREACH;
   if (shim::is_any(peer.host)) peer.host = route.source;
   if (stream.local.port == 0) {
@@ -123,8 +122,7 @@ Task<int> HostStreams::write(StreamSocket& stream, std::span<const std::byte> da
   const std::size_t most = kMostSegment - (shim::is_ipv4(stream.peer.host) ? 0 : kIpv6Bytes);
   while (written < data.size() && stream.on_the_way < kWindow &&
          stream.state == StreamSocket::State::kOpen) {
-    const std::size_t size =
-        std::min({data.size() - written, most, kWindow - stream.on_the_way});
+    const std::size_t size = std::min({data.size() - written, most, kWindow - stream.on_the_way});
     const auto piece = data.subspan(written, size);
     stream.on_the_way += size;
     written += size;
@@ -241,12 +239,12 @@ std::optional<HostStreams::Segment> HostStreams::segment_of(PeerId from,
   if (message.size() < begin) return std::nullopt;
   return Segment{
       .kind = static_cast<SegmentKind>(head[0] & 7),
-      .from = scoped({.host = address_of(from, from_kind),
-                      .port = boost::endian::load_big_u16(head + 1)},
-                     shim::kFirstCard),
-      .to = scoped({.host = address_of(host_.id(), to_kind),
-                    .port = boost::endian::load_big_u16(head + 3)},
-                   shim::kFirstCard),
+      .from = scoped(
+          {.host = address_of(from, from_kind), .port = boost::endian::load_big_u16(head + 1)},
+          shim::kFirstCard),
+      .to = scoped(
+          {.host = address_of(host_.id(), to_kind), .port = boost::endian::load_big_u16(head + 3)},
+          shim::kFirstCard),
       .data = Bytes(message.begin() + static_cast<std::ptrdiff_t>(begin), message.end())};
 }
 

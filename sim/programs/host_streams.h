@@ -2,9 +2,10 @@
 //
 // All connections between two hosts share the port's stream to that host (algorithms/ports/host.h),
 // in segments of at most 1448 bytes (IPv6: 1428) with five bytes of head (IPv6: 25, as its head is
-// 20 bytes longer) beside those that the network counts anyway. What is complete, in order and delayed there is so here; the segments that
-// acknowledge are not sent, but for credit: a receiver holds at most 256 KiB that its program has
-// not read, and says what room there is as the program reads.
+// 20 bytes longer) beside those that the network counts anyway. What is complete, in order and
+// delayed there is so here; the segments that acknowledge are not sent, but for credit: a receiver
+// holds at most 256 KiB that its program has not read, and says what room there is as the program
+// reads.
 //
 // A connection within the host takes no time. Not modelled: time-outs of connecting and of idle
 // connections, urgent data, a state after closing (a closed port is free at once). A listener whose
@@ -44,8 +45,8 @@ struct StreamSocket {
 
   State state = State::kFresh;
   int family = AF_INET;
-  bool only_ipv6 = false;        // IPV6_V6ONLY
-  std::uint32_t interface = 0;   // SO_BINDTODEVICE; 0: any
+  bool only_ipv6 = false;       // IPV6_V6ONLY
+  std::uint32_t interface = 0;  // SO_BINDTODEVICE; 0: any
   shim::Address local{};
   shim::Address peer{};
   int error = 0;                  // SO_ERROR

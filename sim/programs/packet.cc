@@ -15,7 +15,7 @@ constexpr std::size_t kIcmpHead = 8;
 constexpr std::size_t kIpv4Head = 20;
 constexpr std::size_t kIpv6Head = 40;
 constexpr std::size_t kFragmentHead = 8;
-constexpr std::size_t kMostIpv4 = 65'535;      // with its head
+constexpr std::size_t kMostIpv4 = 65'535;       // with its head
 constexpr std::size_t kMostAfterIpv6 = 65'535;  // without
 constexpr std::size_t kLeastFrame = 46;
 // What a router must carry, of which a refusal makes use (RFC 1812, 4.3.2.3; RFC 4443, 2.4).
@@ -97,7 +97,8 @@ std::vector<WirePacket> fragments_of(WirePacket packet) {
     const std::size_t most = begin == 0 ? most_in_first_fragment(is_ipv4) : room;
     const std::size_t size = std::min(whole - begin, most);
     const auto from = packet.payload.begin() + static_cast<std::ptrdiff_t>(begin);
-    WirePacket part{.head = packet.head, .payload = Bytes(from, from + static_cast<std::ptrdiff_t>(size))};
+    WirePacket part{.head = packet.head,
+                    .payload = Bytes(from, from + static_cast<std::ptrdiff_t>(size))};
     part.head.begin = static_cast<std::uint32_t>(begin);
     part.head.whole = static_cast<std::uint32_t>(whole);
     parts.push_back(std::move(part));

@@ -20,8 +20,9 @@
 // Source: RFC 768, 791, 792, 4443, 8200; IEEE 802.3; Linux, net/ipv4/ip_output.c, ip_fragment.c,
 // icmp.c and their kin of IPv6.
 //
-//   for (WirePacket& part : fragments_of(std::move(packet))) co_await channel.send(to_message(part));
-//   if (std::optional<WirePacket> whole = reassembly.add(peer, *packet_of(bytes), now)) take(*whole);
+//   for (WirePacket& part : fragments_of(std::move(packet))) co_await
+//   channel.send(to_message(part)); if (std::optional<WirePacket> whole = reassembly.add(peer,
+//   *packet_of(bytes), now)) take(*whole);
 #pragma once
 
 #include <cstddef>

@@ -68,8 +68,8 @@ Task<void> PacketSender::send(std::uint64_t socket, Way way, WirePacket packet, 
     if (std::exchange(is_first, false)) leaving.message = message;
   }
   if (stamps == 0) co_return;
-  leaving.lacks_hardware = (stamps & shim::kHardwareStamps) != 0 && card_stamping_.departures &&
-                           host_.nic() != nullptr;
+  leaving.lacks_hardware =
+      (stamps & shim::kHardwareStamps) != 0 && card_stamping_.departures && host_.nic() != nullptr;
   // As Linux, which takes both only where both are asked for.
   leaving.lacks_software = (stamps & shim::kSoftwareStamps) != 0 &&
                            (!leaving.lacks_hardware || (stamps & shim::kBothStamps) != 0);

@@ -80,8 +80,7 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
                            ? 0
                            : static_cast<std::int64_t>(socket.arrived.front().payload.size())};
     case Call::kJoin:
-      return {.error = network_.join(socket, request.head.a != 0,
-                                     static_cast<int>(request.head.b),
+      return {.error = network_.join(socket, request.head.a != 0, static_cast<int>(request.head.b),
                                      read_head<shim::Address>(request.data))};
     case Call::kFilterArrivals:
       return {.error = set_filter(socket, request.data)};

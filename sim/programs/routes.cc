@@ -86,8 +86,8 @@ int Routes::check_own(shim::Address& address, bool only_ipv6, std::uint32_t inte
 }
 
 bool Routes::is_own(const IpAddress& address) const {
-  return shim::is_loopback(address) || address == shim::mapped(ipv4_) ||
-         address == unique_local_ || address == link_local_;
+  return shim::is_loopback(address) || address == shim::mapped(ipv4_) || address == unique_local_ ||
+         address == link_local_;
 }
 
 bool Routes::is_broadcast(const IpAddress& address) {
@@ -130,7 +130,8 @@ Route Routes::to_group(const shim::Address& address, const Wish& wish) const {
     return {.error = EINVAL};
   }
   if (interface != 0 && interface != kFirstCard) return {.error = ENETUNREACH};
-  Route route{.interface = kFirstCard, .source = shim::mapped(ipv4_), .group = group_of(address.host)};
+  Route route{
+      .interface = kFirstCard, .source = shim::mapped(ipv4_), .group = group_of(address.host)};
   if (!is_ipv4) route.source = shim::needs_scope(address.host) ? link_local_ : unique_local_;
   return route;
 }

@@ -33,10 +33,10 @@ bool passes_filter_of_udp(const UdpSocket& socket, QueuedDatagram& datagram) {
                                static_cast<std::uint16_t>(kUdpHead + datagram.payload.size()));
   seen.insert(seen.end(), datagram.payload.begin(), datagram.payload.end());
   const bool is_ipv4 = shim::is_ipv4(arrival.to.host);
-  const std::size_t passes = socket.filter.passed(
-      {.bytes = seen,
-       .protocol = static_cast<std::uint16_t>(is_ipv4 ? 0x0800 : 0x86DD),
-       .interface = arrival.interface});
+  const std::size_t passes =
+      socket.filter.passed({.bytes = seen,
+                            .protocol = static_cast<std::uint16_t>(is_ipv4 ? 0x0800 : 0x86DD),
+                            .interface = arrival.interface});
   datagram.payload.resize(std::max(passes, kUdpHead) - kUdpHead);
   return passes > 0;
 }
@@ -44,12 +44,13 @@ bool passes_filter_of_udp(const UdpSocket& socket, QueuedDatagram& datagram) {
 // A frame has its link's head here, which a socket of SOCK_DGRAM does not get.
 bool passes_filter_of_frames(const UdpSocket& socket, QueuedDatagram& frame) {
   const std::size_t begin = socket.packet->has_link_heads ? 0 : kLinkHead;
-  const std::size_t passes = socket.filter.passed({.bytes = frame.payload,
-                                                   .begin = begin,
-                                                   .network_head = kLinkHead,
-                                                   .protocol = frame.arrival.from.port,
-                                                   .kind = shim::unpacked(frame.arrival.from.host).kind,
-                                                   .interface = frame.arrival.interface});
+  const std::size_t passes =
+      socket.filter.passed({.bytes = frame.payload,
+                            .begin = begin,
+                            .network_head = kLinkHead,
+                            .protocol = frame.arrival.from.port,
+                            .kind = shim::unpacked(frame.arrival.from.host).kind,
+                            .interface = frame.arrival.interface});
   const auto first = frame.payload.begin() + static_cast<std::ptrdiff_t>(begin);
   frame.payload = Bytes(first, first + static_cast<std::ptrdiff_t>(passes));
   return passes > 0;
@@ -63,7 +64,7 @@ void name_by_family(const UdpSocket& socket, shim::Arrival& arrival) {
 }  // namespace
 
 void queue_arrival(UdpSocket& socket, QueuedDatagram datagram) {
-  const bool passes = socket.packet              ? passes_filter_of_frames(socket, datagram)
+  const bool passes = socket.packet            ? passes_filter_of_frames(socket, datagram)
                       : socket.filter.is_set() ? passes_filter_of_udp(socket, datagram)
                                                : true;
   if (!passes) return;

@@ -55,11 +55,11 @@ struct PacketPart {
     shim::PacketAddress group{};
   };
 
-  bool has_link_heads = true;      // SOCK_RAW
-  std::uint16_t protocol = 0;      // an Ethertype; 0: nothing comes
-  std::uint32_t interface = 0;     // 0: any
-  bool ignores_outgoing = false;   // PACKET_IGNORE_OUTGOING
-  shim::ArrivalCount counted{};    // PACKET_STATISTICS
+  bool has_link_heads = true;     // SOCK_RAW
+  std::uint16_t protocol = 0;     // an Ethertype; 0: nothing comes
+  std::uint32_t interface = 0;    // 0: any
+  bool ignores_outgoing = false;  // PACKET_IGNORE_OUTGOING
+  shim::ArrivalCount counted{};   // PACKET_STATISTICS
   std::vector<Membership> memberships{};
 };
 
@@ -72,8 +72,8 @@ struct UdpSocket {
   std::optional<shim::Address> peer{};
   bool states_host = false;  // the program has bound it to its address, and to its port
   bool states_port = false;
-  bool only_ipv6 = false;       // IPV6_V6ONLY
-  std::uint32_t interface = 0;  // SO_BINDTODEVICE; 0: any
+  bool only_ipv6 = false;         // IPV6_V6ONLY
+  std::uint32_t interface = 0;    // SO_BINDTODEVICE; 0: any
   unsigned arrival_stamps = 0;    // shim::StampKind, as bits
   unsigned departure_stamps = 0;  // likewise
   bool shares_port = false;       // SO_REUSEADDR
@@ -85,8 +85,8 @@ struct UdpSocket {
   PacketFilter filter{};                // SO_ATTACH_FILTER
   std::optional<PacketPart> packet{};
   int error = 0;
-  int is_shut = 0;         // 1: reading, 2: writing, as bits
-  std::uint32_t sent = 0;  // the number of the next datagram with a stamp
+  int is_shut = 0;                       // 1: reading, 2: writing, as bits
+  std::uint32_t sent = 0;                // the number of the next datagram with a stamp
   std::deque<QueuedDatagram> arrived{};  // not received by the program yet
   std::size_t arrived_bytes = 0;
   std::deque<QueuedDatagram> error_queue{};

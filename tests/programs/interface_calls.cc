@@ -115,8 +115,8 @@ void check_lists() {
     const auto& name = reinterpret_cast<const sockaddr_in6&>(*each->ifa_addr);
     char text[INET6_ADDRSTRLEN];
     inet_ntop(AF_INET6, &name.sin6_addr, text, sizeof text);
-    found6 += std::string(each->ifa_name) + "=" + text + "%" + std::to_string(name.sin6_scope_id) +
-              " ";
+    found6 +=
+        std::string(each->ifa_name) + "=" + text + "%" + std::to_string(name.sin6_scope_id) + " ";
   }
   const std::string number = std::to_string(std::stoi(own_address.substr(7)));
   expect(found6 == "lo=::1%0 eth0=fd00::" + number + "%0 eth0=fe80::aff:fe00:" + number + "%2 ",
@@ -204,8 +204,7 @@ void check_addresses() {
 }
 
 // What a name means, in the order of the list, or an error's number.
-std::string resolved(const char* node, const char* service, int flags = 0,
-                     int family = AF_UNSPEC) {
+std::string resolved(const char* node, const char* service, int flags = 0, int family = AF_UNSPEC) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
   hints.ai_flags = flags;

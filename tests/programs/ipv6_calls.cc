@@ -3,10 +3,10 @@
 //
 //   ipv6_calls answer   says to which address and by which interface a datagram came
 //   ipv6_calls check
+#include <arpa/inet.h>
+#include <linux/errqueue.h>
 #include <net/if.h>
 #include <time.h>
-
-#include <linux/errqueue.h>
 
 #include <string>
 
@@ -248,15 +248,14 @@ void check_error_queue() {
 void check_large() {
   const int fd = udp6();
   for (const std::size_t size : {1452u, 1453u, 20'000u, 65'527u}) {
-    expect(send_to(fd, std::string(size, 'x'), Name("fd00::2", kPort)) ==
-               static_cast<ssize_t>(size),
-           "a large datagram leaves");
+    expect(
+        send_to(fd, std::string(size, 'x'), Name("fd00::2", kPort)) == static_cast<ssize_t>(size),
+        "a large datagram leaves");
     expect(heard(fd, 1000) == "\"" + std::to_string(size) + " to fd00::2%2\" from fd00::2 3200",
            "and comes whole");
   }
   expect(send_to(fd, std::string(65'507, 'x'), Name("::ffff:10.0.0.2", kPort)) == 65'507 &&
-             heard(fd, 1000) ==
-                 "\"65507 to ::ffff:10.0.0.2%2\" from ::ffff:10.0.0.2 3200",
+             heard(fd, 1000) == "\"65507 to ::ffff:10.0.0.2%2\" from ::ffff:10.0.0.2 3200",
          "by IPv4");
   expect_error(send_to(fd, std::string(65'508, 'x'), Name("::ffff:10.0.0.2", kPort)), EMSGSIZE,
                "not more");

@@ -126,10 +126,11 @@ inline std::string events_of(int fd, short asked, int patience_ms = 50) {
   const struct {
     short bit;
     const char* name;
-  } kinds[] = {{POLLIN, "IN"},   {POLLPRI, "PRI"}, {POLLOUT, "OUT"},    {POLLERR, "ERR"},
+  } kinds[] = {{POLLIN, "IN"},   {POLLPRI, "PRI"},   {POLLOUT, "OUT"},    {POLLERR, "ERR"},
                {POLLHUP, "HUP"}, {POLLNVAL, "NVAL"}, {POLLRDHUP, "RDHUP"}};
   for (const auto& kind : kinds) {
-    if ((interest.revents & kind.bit) != 0) text += std::string(text.empty() ? "" : " ") + kind.name;
+    if ((interest.revents & kind.bit) != 0)
+      text += std::string(text.empty() ? "" : " ") + kind.name;
   }
   return text.empty() ? "nothing" : text;
 }
@@ -140,8 +141,10 @@ inline std::string received(int fd, int flags = 0, std::size_t room = 70'000) {
   Name from;
   const ssize_t size = recvfrom(fd, bytes, room, flags, from.name(), from.room());
   if (size < 0) return strerrorname_np(errno);
-  const std::string text(bytes, static_cast<std::size_t>(size) < room ? static_cast<std::size_t>(size) : room);
-  return (size > 40 ? std::to_string(size) + " bytes" : "\"" + text + "\"") + " from " + from.text();
+  const std::string text(
+      bytes, static_cast<std::size_t>(size) < room ? static_cast<std::size_t>(size) : room);
+  return (size > 40 ? std::to_string(size) + " bytes" : "\"" + text + "\"") + " from " +
+         from.text();
 }
 
 }  // namespace twin

@@ -1,8 +1,8 @@
 // Datagrams on the loopback as ip(7), ipv6(7), udp(7) and socket(7) have them: closed ports, error
 // queues, associations that are dissolved, large datagrams, both families.
-#include <time.h>
-
+#include <arpa/inet.h>
 #include <linux/errqueue.h>
+#include <time.h>
 
 #include <initializer_list>
 #include <utility>
@@ -38,8 +38,8 @@ std::string describe_error(const msghdr& message) {
     const bool is_v4 = each->cmsg_level == IPPROTO_IP && each->cmsg_type == IP_RECVERR;
     const bool is_v6 = each->cmsg_level == IPPROTO_IPV6 && each->cmsg_type == IPV6_RECVERR;
     if (!is_v4 && !is_v6) {
-      text += " level " + std::to_string(each->cmsg_level) + " type " +
-              std::to_string(each->cmsg_type);
+      text +=
+          " level " + std::to_string(each->cmsg_level) + " type " + std::to_string(each->cmsg_type);
       continue;
     }
     struct {
@@ -178,7 +178,8 @@ void send_large(const Family& family) {
   connect_to(fd, Name(family.loopback, 4000));
   tell("MTU", number_of(fd, family.level, family.mtu));
   tell("MTU of no peer", number_of(server, family.level, family.mtu));
-  for (const std::size_t size : {1472u, 1473u, 40'000u, 65'507u, 65'508u, 65'527u, 65'528u, 66'000u}) {
+  for (const std::size_t size :
+       {1472u, 1473u, 40'000u, 65'507u, 65'508u, 65'527u, 65'528u, 66'000u}) {
     const std::string large(size, 'x');
     say("send", send(fd, large.data(), large.size(), 0));
     tell("received", received(server, MSG_DONTWAIT));
@@ -292,7 +293,8 @@ void share_a_port() {
 
 int main() {
   for (const Family& family : kFamilies) {
-    for (const auto& [name, part] : std::initializer_list<std::pair<const char*, void (*)(const Family&)>>{
+    for (const auto& [name, part] :
+         std::initializer_list<std::pair<const char*, void (*)(const Family&)>>{
              {"connected", refuse_connected},
              {"unconnected", refuse_unconnected},
              {"queue", queue_errors},

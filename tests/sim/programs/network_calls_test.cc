@@ -80,6 +80,14 @@ TEST_F(NetworkCallsTest, Ipv6DoesWhatManPagesPromise) {
   EXPECT_EQ(said[1], "");
 }
 
+TEST_F(NetworkCallsTest, PacketSocketsDoWhatManPagesPromise) {
+  const std::vector<std::string> said =
+      run("packet_calls", {{"check", "stamps"}}, {{"answer"}},
+          {{"/hosts/nic/hardware_stamps", "true"}, {"/network/bandwidth_mbit_per_s", "1000"}});
+  EXPECT_EQ(said[0], "done\n");
+  EXPECT_EQ(said[1], "");
+}
+
 TEST_F(NetworkCallsTest, InterfacesAndNamesAreThoseOfTheWorld) {
   for (const char* stamps : {"false", "true"}) {
     const std::vector<std::string> said =

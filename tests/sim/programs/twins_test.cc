@@ -98,6 +98,7 @@ class Twins : public testing::TestWithParam<const char*> {};
 TEST_P(Twins, SayTheSame) {
   const std::vector<std::string> machine = on_machine(GetParam());
   const std::vector<std::string> world = in_world(GetParam());
+  if (machine.front() == "raw: EPERM") GTEST_SKIP() << "packet sockets are root's here";
   ASSERT_GT(machine.size(), 50U) << "the program has run";
   for (std::size_t i = 0; i < std::min(machine.size(), world.size()); ++i) {
     EXPECT_EQ(world[i], machine[i])
@@ -107,7 +108,8 @@ TEST_P(Twins, SayTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Loopback, Twins,
-                         testing::Values("twin_datagrams", "twin_descriptors", "twin_streams"),
+                         testing::Values("twin_datagrams", "twin_descriptors", "twin_packets",
+                                         "twin_streams"),
                          [](const auto& each) { return std::string(each.param); });
 
 }  // namespace
