@@ -86,8 +86,8 @@ Came next(int fd, int patience_ms = 50) {
   char bytes[2000];
   sockaddr_ll from{};
   socklen_t size = sizeof from;
-  const ssize_t got = recvfrom(fd, bytes, sizeof bytes, MSG_DONTWAIT,
-                               reinterpret_cast<sockaddr*>(&from), &size);
+  const ssize_t got =
+      recvfrom(fd, bytes, sizeof bytes, MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &size);
   if (got < 0) return came;
   came.bytes = std::string(bytes, static_cast<std::size_t>(got));
   std::memcpy(came.from.data(), from.sll_addr, came.from.size());
@@ -107,7 +107,8 @@ void check_ways() {
   expect(send_frame(fd, kSecond, "hello") == 19, "a frame leaves");
   const Came came = next(fd);
   expect(came.bytes.size() == 60 && came.bytes.substr(14, 5) == "hello", "it comes padded");
-  expect(came.bytes[19] == 0 && came.from == kSecond && came.kind == PACKET_HOST, "and says whence");
+  expect(came.bytes[19] == 0 && came.from == kSecond && came.kind == PACKET_HOST,
+         "and says whence");
   expect(answers(fd) == 0, "to one host alone");
   send_frame(fd, kAll, "all");
   expect(answers(fd) == 2, "a broadcast goes to both others");
@@ -123,8 +124,7 @@ void check_ways() {
   expect(answers(fd) == 0, "the switch does not forward what is for the cable");
   send_frame(fd, kGroup, std::string(1486, 'x'), kOtherProtocol);
   expect(answers(fd) == 0, "of another protocol");
-  expect(send_frame(fd, kSecond, std::string(1500, 'x')) == 1514 &&
-             next(fd).bytes.size() == 1514,
+  expect(send_frame(fd, kSecond, std::string(1500, 'x')) == 1514 && next(fd).bytes.size() == 1514,
          "as much as a link carries");
   expect_error(send_frame(fd, kSecond, std::string(1501, 'x')), EMSGSIZE, "and no more");
   close(fd);
@@ -198,9 +198,9 @@ void check_stamps() {
   const clockid_t clock = (~static_cast<clockid_t>(clock_fd) << 3) | 3;
   const int fd = open_bound(kProtocol);
   switch_stamps_on(fd);
-  set_number(fd, SOL_SOCKET, SO_TIMESTAMPING,
-             SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE |
-                 SOF_TIMESTAMPING_RAW_HARDWARE);
+  set_number(
+      fd, SOL_SOCKET, SO_TIMESTAMPING,
+      SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE);
   const std::int64_t before = read_clock(clock);
   send_frame(fd, kSecond, "stamp");
   pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
