@@ -110,7 +110,7 @@ constexpr IpAddress unique_local(std::uint32_t number) {
   return address;
 }
 
-// Of the host that has this IPv4 address.
+// The link-local address of the host that has this one by IPv4.
 constexpr IpAddress link_local(std::uint32_t ipv4) {
   return {{0xFE, 0x80, 0, 0, 0, 0, 0, 0, 0, 0, static_cast<std::uint8_t>(ipv4 >> 24), 0xFF, 0xFE,
            static_cast<std::uint8_t>(ipv4 >> 16), static_cast<std::uint8_t>(ipv4 >> 8),

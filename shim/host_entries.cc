@@ -23,8 +23,8 @@ struct EntryRoom {
   char name[kMostName];
 };
 
-void fill_entry(hostent& entry, EntryRoom& room, const char* name, const IpAddress& address,
-                int family) {
+void fill_host(hostent& entry, EntryRoom& room, const char* name, const IpAddress& address,
+               int family) {
   room = {};
   snprintf(room.name, sizeof room.name, "%s", name);
   const std::uint32_t dotted = htonl(number_in(address));
@@ -84,7 +84,7 @@ SIMBENCH_CALL hostent* gethostbyname2(const char* name, int family) {
   IpAddress address{};
   h_errno = look_up(name, family, address);
   if (h_errno != 0) return nullptr;
-  fill_entry(own_entry, own_room, name, address, family);
+  fill_host(own_entry, own_room, name, address, family);
   return &own_entry;
 }
 
@@ -100,7 +100,7 @@ SIMBENCH_CALL hostent* gethostbyaddr(const void* bytes, socklen_t size, int fami
   if (read_address_of(bytes, size, family, address)) write_name_of(address, name, sizeof name);
   h_errno = name[0] == '\0' ? HOST_NOT_FOUND : 0;
   if (h_errno != 0) return nullptr;
-  fill_entry(own_entry, own_room, name, address, family);
+  fill_host(own_entry, own_room, name, address, family);
   return &own_entry;
 }
 
@@ -115,7 +115,7 @@ SIMBENCH_CALL int gethostbyname2_r(const char* name, int family, hostent* entry,
   IpAddress address{};
   *error = look_up(name, family, address);
   if (*error != 0) return 0;
-  fill_entry(*entry, *room, name, address, family);
+  fill_host(*entry, *room, name, address, family);
   *result = entry;
   return 0;
 }
@@ -145,7 +145,7 @@ SIMBENCH_CALL int gethostbyaddr_r(const void* address_bytes, socklen_t address_s
   }
   *error = name[0] == '\0' ? HOST_NOT_FOUND : 0;
   if (*error != 0) return 0;
-  fill_entry(*entry, *room, name, address, family);
+  fill_host(*entry, *room, name, address, family);
   *result = entry;
   return 0;
 }

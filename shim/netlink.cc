@@ -166,7 +166,7 @@ void state_links(const nlmsghdr& question, const ifinfomsg& which, const char* n
   state_link(facts, question, 0, answer);
 }
 
-// Of one family, or of both.
+// The addresses of one family, or of both.
 void state_addresses(const nlmsghdr& question, unsigned char family, NetlinkAnswer& answer) {
   for (int i = 0; i < interfaces() && family != AF_INET6; ++i) {
     state_address(interface_at(i), question, answer);

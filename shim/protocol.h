@@ -147,7 +147,7 @@ struct IpAddress {
   friend bool operator==(const IpAddress&, const IpAddress&) = default;
 };
 
-// A socket's address. Of a packet socket the host is a PacketAddress, the port the protocol.
+// A socket's address. In a packet socket's the host is a PacketAddress, the port the protocol.
 struct Address {
   IpAddress host{};
   std::uint32_t scope = 0;   // the number of an interface; 0: not said

@@ -166,7 +166,7 @@ int set_socket_option(int fd, int option, const void* value, socklen_t size) {
   return set_stamps(fd, option == SO_TIMESTAMP_OLD ? Stamps::kTimeval : Stamps::kTimespec, number);
 }
 
-// Of the table.
+// Options of the table.
 
 // The number that an option of this rule has after it was set to `value`; false with EINVAL.
 bool admit(const OptionRule& rule, int value, int& kept) {
@@ -192,7 +192,7 @@ bool admit(const OptionRule& rule, int value, int& kept) {
   return is_good;
 }
 
-int number_in(int level, const void* value, socklen_t size) {
+int wanted_number(int level, const void* value, socklen_t size) {
   int number = 0;
   if (size >= sizeof number) {
     memcpy(&number, value, sizeof number);
@@ -289,7 +289,7 @@ SIMBENCH_CALL int setsockopt(int fd, int level, int option, const void* value, s
   const OptionRule* rule = find_rule(owner_of(fd), level, option);
   if (rule == nullptr) return refuse(ENOPROTOOPT);
   if (level != IPPROTO_IP && size < sizeof(int)) return refuse(EINVAL);
-  return set_number(fd, *rule, number_in(level, value, size));
+  return set_number(fd, *rule, wanted_number(level, value, size));
 }
 
 namespace {

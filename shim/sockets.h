@@ -35,7 +35,7 @@ struct SocketState {
   bool listens = false;
 };
 
-// Of datagrams, packet sockets among them.
+// A socket of datagrams; packet sockets are among them.
 bool is_socket(int fd);
 // Either that, or a connection's.
 bool is_of_network(int fd);

@@ -18,8 +18,6 @@ namespace {
 using shim::kFirstCard;
 using shim::kLoopbackInterface;
 
-constexpr std::size_t kLinkHead = 14;
-constexpr std::size_t kLeastFrame = 60;
 constexpr std::uint16_t kLeastProtocol = 0x0600;  // below it stands the length of an 802.2 packet
 
 bool is_group_address(const std::array<std::uint8_t, 6>& address) { return (address[0] & 1) != 0; }
@@ -162,10 +160,10 @@ int HostFrames::build_frame(const UdpSocket& socket, std::uint32_t interface,
   const bool has_head = socket.packet->has_link_heads;
   const std::size_t mtu =
       interface == kLoopbackInterface ? shim::kLoopbackMtu : std::size_t{shim::kLinkMtu};
-  if (data.size() > mtu + (has_head ? kLinkHead : 0)) return EMSGSIZE;
-  if (has_head && data.size() < kLinkHead) return EINVAL;
+  if (data.size() > mtu + (has_head ? kEthernetHead : 0)) return EMSGSIZE;
+  if (has_head && data.size() < kEthernetHead) return EINVAL;
   if (!has_head) {
-    Bytes head(kLinkHead);
+    Bytes head(kEthernetHead);
     const CardAddress card = card_in(to);
     const CardAddress own = card_address(interface);
     std::memcpy(head.data(), card.data(), card.size());
@@ -228,7 +226,7 @@ Task<int> HostFrames::send(UdpSocket& socket, shim::Address to, Bytes data, unsi
   WirePacket packet{
       .head = {.kind = PacketKind::kFrame,
                .is_on_link = card > 0 || is_for_link(target) ? std::uint8_t{1} : std::uint8_t{0}},
-      .payload = Bytes(seen.frame.begin() + kLinkHead, seen.frame.end())};
+      .payload = Bytes(seen.frame.begin() + kEthernetHead, seen.frame.end())};
   // The protocol as it is stated, which may be a length.
   const std::uint16_t stated =
       boost::endian::load_big_u16(reinterpret_cast<const unsigned char*>(seen.frame.data()) + 12);
@@ -244,14 +242,14 @@ void HostFrames::take(PeerId from, WirePacket packet) {
   const CardAddress to = card_in(packet.head.to);
   const std::uint8_t kind = kind_of(interface, to);
   if (!takes(interface, kind, to)) return;
-  Bytes frame(kLinkHead);
+  Bytes frame(kEthernetHead);
   const CardAddress sender = card_in(packet.head.from);
   std::memcpy(frame.data(), to.data(), to.size());
   std::memcpy(frame.data() + to.size(), sender.data(), sender.size());
   boost::endian::store_big_u16(reinterpret_cast<unsigned char*>(frame.data()) + 12,
                                packet.head.to.port);
   frame.insert(frame.end(), packet.payload.begin(), packet.payload.end());
-  frame.resize(std::max(frame.size(), kLeastFrame));
+  frame.resize(std::max(frame.size(), kEthernetHead + kLeastFramePayload));
   Seen seen{.interface = interface,
             .kind = kind,
             .from = sender,

@@ -17,9 +17,11 @@
 //
 // Source: packet(7); IEEE 802.3, 802.1Q; Linux, net/packet/af_packet.c.
 //
+//   PacketSender sender(host);
 //   HostFrames frames(host, sender, 6);
-//   frames.open(socket);  // one with a PacketPart
-//   const int error = co_await frames.send(socket, {}, Bytes(60), 0);  // ENXIO: by no interface
+//   UdpSocket own{.family = AF_PACKET, .packet = PacketPart{.protocol = 0x88F7}};
+//   frames.open(own);
+//   const int error = co_await frames.send(own, {}, Bytes(60), 0);  // ENXIO: by no interface
 #pragma once
 
 #include <array>
@@ -70,7 +72,7 @@ class HostFrames {
 
   bool is_interface(std::uint32_t number) const;
   CardAddress card_address(std::uint32_t interface) const;
-  // Of the host that has the address, on its first card.
+  // The host that has the address, on its first card.
   std::optional<PeerId> owner_of(const CardAddress& address) const;
   PacketSender::Way way_of(std::uint32_t card, const CardAddress& to) const;
   bool takes(std::uint32_t interface, std::uint8_t kind, const CardAddress& to) const;

@@ -10,14 +10,12 @@
 namespace simbench::sim {
 namespace {
 
-constexpr std::size_t kUdpHead = 8;
 constexpr std::size_t kIcmpHead = 8;
 constexpr std::size_t kIpv4Head = 20;
 constexpr std::size_t kIpv6Head = 40;
 constexpr std::size_t kFragmentHead = 8;
 constexpr std::size_t kMostIpv4 = 65'535;       // with its head
 constexpr std::size_t kMostAfterIpv6 = 65'535;  // without
-constexpr std::size_t kLeastFrame = 46;
 // What a router must carry, of which a refusal makes use (RFC 1812, 4.3.2.3; RFC 4443, 2.4).
 constexpr std::size_t kQuotedIpv4 = 576;
 constexpr std::size_t kQuotedIpv6 = 1280;
@@ -55,7 +53,7 @@ double bytes_on_wire(const WirePacket& packet) {
   const std::size_t longer = is_ipv4 ? 0 : kIpv6Head - kIpv4Head;
   switch (packet.head.kind) {
     case PacketKind::kFrame:
-      return static_cast<double>(std::max(size, kLeastFrame) - kIpv4Head);
+      return static_cast<double>(std::max(size, kLeastFramePayload) - kIpv4Head);
     case PacketKind::kRefusal:
       return static_cast<double>(longer + kIcmpHead + ip_head(is_ipv4) + kUdpHead + size);
     case PacketKind::kDatagram:

@@ -20,9 +20,13 @@
 // Source: RFC 768, 791, 792, 4443, 8200; IEEE 802.3; Linux, net/ipv4/ip_output.c, ip_fragment.c,
 // icmp.c and their kin of IPv6.
 //
-//   for (WirePacket& part : fragments_of(std::move(packet))) co_await
-//   channel.send(to_message(part)); if (std::optional<WirePacket> whole = reassembly.add(peer,
-//   *packet_of(bytes), now)) take(*whole);
+//   const WirePacket packet{.head = {.to = shim::ipv4_address(0x0A000002, 123)},
+//                           .payload = Bytes(5000)};
+//   Reassembly reassembly;
+//   for (const WirePacket& part : fragments_of(packet)) {  // four
+//     const std::optional<WirePacket> whole = reassembly.add(0, part, SteadyTime{});
+//     if (whole) use(whole->payload);  // with the fourth
+//   }
 #pragma once
 
 #include <cstddef>
@@ -56,10 +60,15 @@ struct PacketHead {
 struct WirePacket {
   PacketHead head{};
   Bytes payload{};
-  // Of one that has arrived.
+  // The stamps of one that has arrived.
   std::int64_t system = shim::kNoStamp;
   std::int64_t hardware = shim::kNoStamp;
 };
+
+// The heads of Ethernet and UDP, and the least that a frame carries.
+inline constexpr std::size_t kEthernetHead = 14;
+inline constexpr std::size_t kUdpHead = 8;
+inline constexpr std::size_t kLeastFramePayload = 46;
 
 // The most that a datagram carries, and one that leaves in one packet.
 std::size_t most_payload(bool is_ipv4);

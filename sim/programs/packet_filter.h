@@ -13,8 +13,8 @@
 //                                          BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0x88F7, 0, 1),
 //                                          BPF_STMT(BPF_RET | BPF_K, 0xFFFF),
 //                                          BPF_STMT(BPF_RET | BPF_K, 0)};
-//   if (PacketFilter::check(code) == 0) filter = PacketFilter(code);
-//   const std::size_t passes = filter.passed({.bytes = frame, .protocol = 0x88F7});
+//   const Bytes frame(60);
+//   if (PacketFilter::check(code) == 0) use(PacketFilter(code).passed({.bytes = frame}));  // 0
 #pragma once
 
 #include <linux/filter.h>

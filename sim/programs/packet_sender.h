@@ -4,13 +4,14 @@
 // one to a group (sim/host/sim_channel.h), and costs a send call. Its stamps go to the error queue
 // of its socket: that by software when the call returns, or once the host's own queue has let the
 // message go, that of the card as the message passes it, if the card stamps departures
-// (SIOCSHWTSTAMP). Of a datagram in fragments the first is stamped, as Linux does.
+// (SIOCSHWTSTAMP). A datagram in fragments has the stamp of the first, as Linux does.
 //
 // Sockets are known by numbers, so that one that is closed meanwhile hears nothing.
 //
 //   PacketSender sender(host);
-//   sender.enrol(socket);
-//   co_await sender.send(socket.number, {.peer = 3}, std::move(packet), stamps, std::move(told));
+//   UdpSocket own;
+//   sender.enrol(own);
+//   co_await sender.send(own.number, {.peer = 3}, WirePacket{}, shim::kSoftwareStamps, {});
 #pragma once
 
 #include <cstdint>
@@ -58,7 +59,7 @@ class PacketSender {
   // `told` is what its socket then hears.
   Task<void> send(std::uint64_t socket, Way way, WirePacket packet, unsigned stamps,
                   QueuedDatagram told);
-  // Of the loopback, which stamps by software.
+  // For what takes the loopback, which stamps by software.
   void stamp_at_once(UdpSocket& socket, unsigned stamps, QueuedDatagram told);
   // The kernel's stamp of what happens now; kNoStamp where stamps are the programs' own.
   std::int64_t stamp_now() const;

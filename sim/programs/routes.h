@@ -67,7 +67,7 @@ class Routes {
   Route to(const shim::Address& address, const Wish& wish) const;
   // Whether a socket that has these may be bound to the address, an errno or 0; sets its scope.
   int check_own(shim::Address& address, bool only_ipv6, std::uint32_t interface) const;
-  // Of its own, or 127.0.0.0/8 or ::1.
+  // Whether the host itself has it: its own, 127.0.0.0/8 and ::1.
   bool is_own(const shim::IpAddress& address) const;
   // The network's broadcast, or that of all.
   static bool is_broadcast(const shim::IpAddress& address);

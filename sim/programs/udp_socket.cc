@@ -9,14 +9,13 @@
 #include <span>
 
 #include "shim/addresses.h"
+#include "sim/programs/packet.h"
 
 namespace simbench::sim {
 namespace {
 
 constexpr int kShutForReading = 1;
 constexpr int kShutForWriting = 2;
-constexpr std::size_t kUdpHead = 8;
-constexpr std::size_t kLinkHead = 14;
 
 bool is_refusal(const QueuedDatagram& told) {
   return told.arrival.origin == SO_EE_ORIGIN_ICMP || told.arrival.origin == SO_EE_ORIGIN_ICMP6;
@@ -43,11 +42,11 @@ bool passes_filter_of_udp(const UdpSocket& socket, QueuedDatagram& datagram) {
 
 // A frame has its link's head here, which a socket of SOCK_DGRAM does not get.
 bool passes_filter_of_frames(const UdpSocket& socket, QueuedDatagram& frame) {
-  const std::size_t begin = socket.packet->has_link_heads ? 0 : kLinkHead;
+  const std::size_t begin = socket.packet->has_link_heads ? 0 : kEthernetHead;
   const std::size_t passes =
       socket.filter.passed({.bytes = frame.payload,
                             .begin = begin,
-                            .network_head = kLinkHead,
+                            .network_head = kEthernetHead,
                             .protocol = frame.arrival.from.port,
                             .kind = shim::unpacked(frame.arrival.from.host).kind,
                             .interface = frame.arrival.interface});

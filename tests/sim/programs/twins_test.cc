@@ -29,7 +29,7 @@ namespace {
 
 using testing::IsEmpty;
 
-std::vector<std::string> lines_of(std::istream&& text) {
+std::vector<std::string> said_lines(std::istream&& text) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
@@ -72,7 +72,7 @@ std::vector<std::string> on_machine(const std::string& program) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(status, 0) << program;
-  return lines_of(std::istringstream(said));
+  return said_lines(std::istringstream(said));
 }
 
 std::vector<std::string> in_world(const std::string& program) {
@@ -87,7 +87,7 @@ std::vector<std::string> in_world(const std::string& program) {
       scenarios::load_scenario("6host_star", {{"/hosts/count", "2"}, {"/cameras/count", "2"}}));
   world.start(sync);
   world.run_until(60);
-  std::vector<std::string> said = lines_of(
+  std::vector<std::string> said = said_lines(
       std::ifstream(fmt::format("{}/test/seed1/host0/0_simbench_{}.log", folder, program)));
   std::filesystem::remove_all(folder);
   return said;
