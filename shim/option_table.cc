@@ -61,7 +61,8 @@ constexpr OptionRule kRules[] = {
     any_number(SOL_SOCKET, SO_INCOMING_CPU, kOfAll, -1),
     number(SOL_SOCKET, SO_ZEROCOPY, kOfIp, 0, 0, 1),
 
-    known_as(number(IPPROTO_IP, IP_TOS, kOfIp, 0, 0, 255), SocketOption::kTrafficClass),
+    known_as({IPPROTO_IP, IP_TOS, kOfIp, OptionForm::kByte, 0, 0, 255, false, {}},
+             SocketOption::kTrafficClass),
     known_as(or_default(IPPROTO_IP, IP_TTL, kOfIp, 64, 1, 255), SocketOption::kHops),
     toggle(IPPROTO_IP, IP_RECVOPTS, kOfIp),
     toggle(IPPROTO_IP, IP_RETOPTS, kOfIp),
@@ -78,7 +79,10 @@ constexpr OptionRule kRules[] = {
     toggle(IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, kOfIp),
     known_as(or_default(IPPROTO_IP, IP_MULTICAST_TTL, kOfIp, 1, 0, 255), SocketOption::kGroupHops),
     known_as(toggle(IPPROTO_IP, IP_MULTICAST_LOOP, kOfIp, 1), SocketOption::kLoopGroups),
-    known_as(number(IPPROTO_IP, IP_MULTICAST_ALL, kOfIp, 1, 0, 1), SocketOption::kAllGroups),
+    known_as(number(IPPROTO_IP, IP_MULTICAST_ALL, kOfUdp4 | kOfTcp4, 1, 0, 1),
+             SocketOption::kAllGroups),
+    known_as(number(IPPROTO_IP, IP_MULTICAST_ALL, kOfIpv6Sockets, 0, 0, 1),
+             SocketOption::kAllGroups),
 
     known_as(toggle(IPPROTO_IPV6, IPV6_V6ONLY, kOfIpv6Sockets), SocketOption::kOnlyIpv6),
     known_as(or_default(IPPROTO_IPV6, IPV6_UNICAST_HOPS, kOfIpv6Sockets, 64, 0, 255),

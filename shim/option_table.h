@@ -35,6 +35,7 @@ enum class OptionForm : std::uint8_t {
   kNumber,   // between `least` and `most`, else EINVAL
   kSwitch,   // any number; 0 or 1 is kept
   kDefault,  // a number, -1 for what it began with
+  kByte,     // the lower eight bits of any number
   kRoom,     // twice the number, between `least` and `most`
 };
 

@@ -9,6 +9,7 @@
 
 #include "shim/interfaces.h"
 #include "shim/sockets.h"
+#include "shim/streams.h"
 
 namespace simbench::shim {
 namespace {
@@ -105,6 +106,7 @@ int keep_group_interface(int fd, bool is_v6, std::uint32_t interface) {
 
 // Where multicasts leave.
 int set_group_interface(int fd, const void* value, socklen_t size) {
+  if (is_stream(fd)) return refuse(EINVAL);
   ip_mreqn wanted{};
   if (size >= sizeof(ip_mreq)) {
     read_membership(value, size, wanted);
@@ -120,6 +122,7 @@ int set_group_interface(int fd, const void* value, socklen_t size) {
 }
 
 int set_group_interface6(int fd, const void* value, socklen_t size) {
+  if (is_stream(fd)) return refuse(ENOPROTOOPT);
   std::uint32_t interface = 0;
   if (size < sizeof interface) return refuse(EINVAL);
   memcpy(&interface, value, sizeof interface);

@@ -181,6 +181,9 @@ bool admit(const OptionRule& rule, int value, int& kept) {
       kept = twice < rule.least ? rule.least : twice;
       return true;
     }
+    case OptionForm::kByte:
+      kept = value & 0xFF;
+      return true;
     case OptionForm::kDefault:
       if (value == -1) kept = rule.initial;
       break;

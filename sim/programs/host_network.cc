@@ -70,6 +70,8 @@ void HostNetwork::open(UdpSocket& socket) {
   if (socket.packet) return frames_.open(socket);
   socket.local.family = static_cast<std::uint16_t>(socket.family);
   if (socket.family == AF_INET) socket.local.host = shim::mapped(0);
+  // Linux begins so (inet6_create()).
+  socket.ipv4.takes_all_groups = socket.family == AF_INET;
   sender_.enrol(socket);
 }
 

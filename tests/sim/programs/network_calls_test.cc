@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -33,16 +34,24 @@ class NetworkCallsTest : public testing::Test {
   std::vector<std::string> run(const std::string& program, std::vector<Words> master,
                                std::vector<Words> slave,
                                const std::vector<scenarios::Override>& changes = {}) {
-    std::filesystem::remove_all(folder_);
     const std::string path = std::string(SIMBENCH_PROGRAMS) + "/simbench_" + program;
     for (std::vector<Words>* commands : {&master, &slave}) {
       for (Words& each : *commands) each.insert(each.begin(), path);
     }
-    ProgramSync sync({.pipeline = "test",
-                      .programs = {.master = std::move(master), .slave = std::move(slave)},
-                      .shim = SIMBENCH_SHIM,
-                      .log_folder = folder_,
-                      .hosts = kCallingHosts});
+    return run_commands(std::move(master), std::move(slave), "simbench_" + program, changes);
+  }
+
+  // The same with whole commands, of which the first has this name.
+  std::vector<std::string> run_commands(std::vector<Words> master, std::vector<Words> slave,
+                                        const std::string& name,
+                                        const std::vector<scenarios::Override>& changes = {}) {
+    std::filesystem::remove_all(folder_);
+    ProgramSync sync(
+        {.pipeline = "test",
+         .programs = {.master = std::move(master), .slave = std::move(slave), .files = files_},
+         .shim = SIMBENCH_SHIM,
+         .log_folder = folder_,
+         .hosts = kCallingHosts});
     std::vector<scenarios::Override> all{{"/hosts/count", "3"}, {"/cameras/count", "3"}};
     all.insert(all.end(), changes.begin(), changes.end());
     ServiceWorld world(scenarios::load_scenario("6host_star", all), 1);
@@ -51,17 +60,22 @@ class NetworkCallsTest : public testing::Test {
     EXPECT_THAT(world.record.outcomes, IsEmpty()) << world.record.outcomes.front().message;
     std::vector<std::string> outputs;
     for (std::size_t host = 0; host < kCallingHosts; ++host) {
-      outputs.push_back(output(host, program));
+      outputs.push_back(output(host, name));
     }
     return outputs;
   }
 
- private:
-  std::string output(std::size_t host, const std::string& program) const {
-    const auto path = fmt::format("{}/test/seed1/host{}/0_simbench_{}.log", folder_, host, program);
+  static std::string text_of(const std::string& path) {
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
+  }
+
+  std::map<std::string, std::string> files_;  // of each host
+
+ private:
+  std::string output(std::size_t host, const std::string& name) const {
+    return text_of(fmt::format("{}/test/seed1/host{}/0_{}.log", folder_, host, name));
   }
 
   const std::string folder_ = testing::TempDir() + "/network_calls" +
@@ -78,6 +92,25 @@ TEST_F(NetworkCallsTest, Ipv6DoesWhatManPagesPromise) {
   const std::vector<std::string> said = run("ipv6_calls", {{"check"}}, {{"answer"}});
   EXPECT_EQ(said[0], "done\n");
   EXPECT_EQ(said[1], "");
+}
+
+// The same script says the same on two real hosts with these names and addresses.
+TEST_F(NetworkCallsTest, PythonsSocketsSpeakIpv6) {
+  const std::string python = "/usr/bin/python3";
+  if (!std::filesystem::exists(python)) GTEST_SKIP() << python << " is not there";
+  const std::string script = "{files}/ipv6_sockets.py";
+  files_["ipv6_sockets.py"] = text_of(SIMBENCH_SOURCE_DIR "/tests/programs/ipv6_sockets.py");
+  EXPECT_EQ(run_commands({{python, script, "ask"}}, {{python, script, "serve"}}, "python3")[0],
+            "60000 b'XXX' fd00::2 4000 0 0\n"
+            "60000 b'XXX' 10.0.0.2 4000\n"
+            "b'LINK' fe80::aff:fe00:2%eth0\n"
+            "[Errno 111] Connection refused\n"
+            "b'HOST1' fd00::2\n"
+            "b'FD00::2' fd00::2\n"
+            "b'10.0.0.2' 10.0.0.2\n"
+            "b'LOOPBACK' ::1\n"
+            "True host1 host0\n"
+            "done\n");
 }
 
 TEST_F(NetworkCallsTest, PacketSocketsDoWhatManPagesPromise) {

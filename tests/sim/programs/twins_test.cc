@@ -108,8 +108,8 @@ TEST_P(Twins, SayTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Loopback, Twins,
-                         testing::Values("twin_datagrams", "twin_descriptors", "twin_packets",
-                                         "twin_streams"),
+                         testing::Values("twin_datagrams", "twin_descriptors", "twin_options",
+                                         "twin_packets", "twin_streams"),
                          [](const auto& each) { return std::string(each.param); });
 
 }  // namespace
