@@ -129,4 +129,25 @@ constexpr void write_card_address(std::uint32_t ipv4, std::uint32_t number,
   for (int i = 0; i < 6; ++i) card[i] = bytes[i];
 }
 
+// The Ethernet address to which packets for this one go: of its host's first card, or of a group
+// (RFC 1112, section 6.4; RFC 2464, section 7). `first` is host 0's by IPv4.
+constexpr void write_card_of(const IpAddress& address, std::uint32_t first,
+                             std::uint8_t (&card)[6]) {
+  const std::uint32_t number = number_in(address);
+  if (is_ipv4(address) && is_group(address)) {
+    write_card_address(number & 0x7FFFFF, 0, card);
+    card[0] = 0x01;
+    card[2] = 0x5E;
+  } else if (is_group(address)) {
+    write_card_address(number, 0x33, card);
+    card[0] = 0x33;
+  } else if (is_ipv4(address)) {
+    write_card_address(number, 0, card);
+  } else if (is_link_local(address)) {
+    write_card_address((first & 0xFF000000) | (number & 0xFFFFFF), 0, card);
+  } else {
+    write_card_address(first + number - 1, 0, card);
+  }
+}
+
 }  // namespace simbench::shim

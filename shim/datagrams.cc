@@ -51,11 +51,22 @@ void write_ipv6_head(const Arrival& arrival, unsigned char* ip) {
   memcpy(ip + 24, &arrival.to.host, sizeof arrival.to.host);
 }
 
+// The Ethernet addresses between which a packet leaves; none on the loopback.
+void write_link_head(const Arrival& arrival, unsigned char* link) {
+  if (arrival.interface < kFirstCard) return;
+  std::uint8_t card[6] = {};
+  write_card_of(arrival.to.host, identity().first_address, card);
+  memcpy(link, card, sizeof card);
+  write_card_address(identity().address, 0, card);
+  memcpy(link + sizeof card, card, sizeof card);
+}
+
 // The message of a transmit stamp is the packet as it left: Ethernet, IP, UDP, payload.
 void write_heads(const Arrival& arrival, unsigned char* heads) {
   const bool is_by_ipv4 = is_ipv4(arrival.to.host);
   const std::size_t size = size_of_heads(arrival);
   memset(heads, 0, size);
+  write_link_head(arrival, heads);
   heads[12] = is_by_ipv4 ? 0x08 : 0x86;
   heads[13] = is_by_ipv4 ? 0x00 : 0xDD;
   (is_by_ipv4 ? write_ipv4_head : write_ipv6_head)(arrival, heads + kLinkHead);
@@ -175,18 +186,34 @@ void add_older_stamp(const SocketState& state, Control& control) {
   }
 }
 
-// Where it was sent to; of what was sent, whence.
+bool is_refusal() {
+  return datagram.arrival.origin == SO_EE_ORIGIN_ICMP ||
+         datagram.arrival.origin == SO_EE_ORIGIN_ICMP6;
+}
+
+bool has_left() { return datagram.arrival.origin == SO_EE_ORIGIN_TIMESTAMPING; }
+
+// The addresses of the packet that has come, or has left; a refusal came to where its datagram is
+// from.
+in_pktinfo ipv4_facts() {
+  const Arrival& arrival = datagram.arrival;
+  const std::uint32_t from = htonl(number_in(arrival.from.host));
+  const std::uint32_t to = htonl(number_in(arrival.to.host));
+  in_pktinfo facts{};
+  facts.ipi_ifindex = static_cast<int>(arrival.interface);
+  facts.ipi_addr.s_addr = is_refusal() ? from : to;
+  if (has_left()) {
+    facts.ipi_spec_dst.s_addr = from;
+  } else if (!is_refusal()) {
+    facts.ipi_spec_dst.s_addr = is_group(arrival.to.host) ? htonl(identity().address) : to;
+  }
+  return facts;
+}
+
 void add_ipv4_facts(int fd, Control& control) {
   const Arrival& arrival = datagram.arrival;
   if (option_of(fd, IPPROTO_IP, IP_PKTINFO) != 0) {
-    const bool has_left = arrival.origin == SO_EE_ORIGIN_TIMESTAMPING;
-    const Address& own = has_left || is_group(arrival.to.host) ? arrival.from : arrival.to;
-    in_pktinfo to{};
-    to.ipi_ifindex = static_cast<int>(arrival.interface);
-    to.ipi_spec_dst.s_addr =
-        htonl(has_left || !is_group(arrival.to.host) ? number_in(own.host) : identity().address);
-    to.ipi_addr.s_addr = htonl(number_in(arrival.to.host));
-    control.add(IPPROTO_IP, IP_PKTINFO, to);
+    control.add(IPPROTO_IP, IP_PKTINFO, ipv4_facts());
   }
   if (option_of(fd, IPPROTO_IP, IP_RECVTTL) != 0) {
     control.add(IPPROTO_IP, IP_TTL, int{arrival.hops});
@@ -200,7 +227,8 @@ void add_ipv6_facts(int fd, Control& control) {
   const Arrival& arrival = datagram.arrival;
   if (option_of(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO) != 0) {
     in6_pktinfo to{};
-    memcpy(&to.ipi6_addr, &arrival.to.host, sizeof to.ipi6_addr);
+    const IpAddress& host = is_refusal() ? arrival.from.host : arrival.to.host;
+    memcpy(&to.ipi6_addr, &host, sizeof to.ipi6_addr);
     to.ipi6_ifindex = arrival.interface;
     control.add(IPPROTO_IPV6, IPV6_PKTINFO, to);
   }
@@ -254,52 +282,57 @@ sock_extended_err error_of(const SocketState& state) {
   return error;
 }
 
-bool is_refusal() {
-  return datagram.arrival.origin == SO_EE_ORIGIN_ICMP ||
-         datagram.arrival.origin == SO_EE_ORIGIN_ICMP6;
+// Whether the kernel says of an error what else it knows: of refusals, and of packets that have
+// left and come back whole; IPv4 only where that is asked for.
+bool says_more(int fd, const SocketState& state) {
+  if (is_refusal()) return true;
+  const bool is_asked =
+      family_of(fd) == AF_INET6 || (state.timestamping & SOF_TIMESTAMPING_OPT_CMSG) != 0;
+  return has_left() && (state.timestamping & SOF_TIMESTAMPING_OPT_TSONLY) == 0 && is_asked;
 }
 
-// The error, and behind it who reported it, if that was somebody.
+// The error, and behind it who reported it: who refused it, or who sent it.
 template <class Name>
-void add_error_with_name(int level, int type, const SocketState& state, Control& control) {
+void add_error_with_name(int level, int type, bool is_known, const SocketState& state,
+                         Control& control) {
   struct {
     sock_extended_err error;
     Name offender;
   } both{};
   both.error = error_of(state);
-  if (is_refusal()) {
-    Address from = datagram.arrival.from;
-    from.port = 0;
+  if (is_known) {
+    Address who = is_refusal() ? datagram.arrival.to : datagram.arrival.from;
+    who.port = 0;
     socklen_t size = sizeof both.offender;
-    write_address(from, reinterpret_cast<sockaddr*>(&both.offender), &size);
+    write_address(who, reinterpret_cast<sockaddr*>(&both.offender), &size);
   }
   control.add(level, type, both);
 }
 
 void add_error(int fd, const SocketState& state, Control& control) {
+  const bool is_known = says_more(fd, state);
   switch (family_of(fd)) {
     case AF_PACKET:
       return control.add(SOL_PACKET, PACKET_TX_TIMESTAMP, error_of(state));
     case AF_INET6:
-      return add_error_with_name<sockaddr_in6>(IPPROTO_IPV6, IPV6_RECVERR, state, control);
+      return add_error_with_name<sockaddr_in6>(IPPROTO_IPV6, IPV6_RECVERR, is_known, state,
+                                               control);
     default:
-      return add_error_with_name<sockaddr_in>(IPPROTO_IP, IP_RECVERR, state, control);
+      return add_error_with_name<sockaddr_in>(IPPROTO_IP, IP_RECVERR, is_known, state, control);
   }
 }
 
 void fill_message(int fd, bool is_error, msghdr& message) {
   const SocketState& state = state_of(fd);
   const Arrival& arrival = datagram.arrival;
-  const bool has_left = arrival.origin == SO_EE_ORIGIN_TIMESTAMPING;
   // What has left has no name: it is in its heads.
-  const Address name = !is_error ? arrival.from : has_left ? Address{} : arrival.to;
+  const Address name = !is_error ? arrival.from : has_left() ? Address{} : arrival.to;
   if (message.msg_name == nullptr || name.family == AF_UNSPEC) message.msg_namelen = 0;
   write_address(name, static_cast<sockaddr*>(message.msg_name), &message.msg_namelen);
   Control control(message);
   if (!is_error) add_older_stamp(state, control);
   add_stamps(state, control);
-  const bool wants_facts = (state.timestamping & SOF_TIMESTAMPING_OPT_CMSG) != 0;
-  if (!is_error || is_refusal() || (has_left && wants_facts)) add_facts(fd, control);
+  if (!is_error || says_more(fd, state)) add_facts(fd, control);
   if (is_error) add_error(fd, state, control);
 }
 

@@ -204,8 +204,8 @@ struct CardSample {
 // A datagram or a frame; in the error queue what has left, or what was refused: its payload is
 // then that of the datagram which nobody took.
 struct Arrival {
-  Address from{};  // of what was refused: who said that
-  Address to{};
+  Address from{};
+  Address to{};                       // of what was refused, also who said that
   std::int64_t system = INT64_MIN;    // the software stamp; kNoStamp: none
   std::int64_t hardware = INT64_MIN;  // the card's; kNoStamp: none
   std::uint32_t length = 0;           // of the payload, also where less of it follows

@@ -405,13 +405,15 @@ void HostNetwork::take_refusal(const Address& from, const Address& to, Bytes quo
   socket->error = ECONNREFUSED;
   if (!receives_errors) return socket->on_arrival();
   quoted.resize(std::min(quoted.size(), most_quoted(is_ipv4)));
-  queue_error(*socket, {.arrival = {.from = from,
-                                    .to = from,
-                                    .interface = kFirstCard,
-                                    .error = ECONNREFUSED,
-                                    .origin = static_cast<std::uint8_t>(
-                                        is_ipv4 ? SO_EE_ORIGIN_ICMP : SO_EE_ORIGIN_ICMP6)},
-                        .payload = std::move(quoted)});
+  queue_error(*socket,
+              {.arrival = {.from = to,
+                           .to = from,
+                           .interface =
+                               shim::is_loopback(from.host) ? shim::kLoopbackInterface : kFirstCard,
+                           .error = ECONNREFUSED,
+                           .origin = static_cast<std::uint8_t>(is_ipv4 ? SO_EE_ORIGIN_ICMP
+                                                                       : SO_EE_ORIGIN_ICMP6)},
+               .payload = std::move(quoted)});
 }
 
 bool HostNetwork::may_answer(PeerId peer, bool is_ipv4) {

@@ -2,6 +2,7 @@
 // queues, associations that are dissolved, large datagrams, both families.
 #include <arpa/inet.h>
 #include <linux/errqueue.h>
+#include <linux/net_tstamp.h>
 #include <time.h>
 
 #include <initializer_list>
@@ -30,6 +31,26 @@ constexpr Family kFamilies[] = {
 
 int open_socket(const Family& family) { return socket(family.family, SOCK_DGRAM, 0); }
 
+// Addresses and interface, as far as the head has them.
+std::string describe_facts(const cmsghdr& head) {
+  char host[INET6_ADDRSTRLEN] = "";
+  std::string text;
+  if (head.cmsg_level == IPPROTO_IP && head.cmsg_type == IP_PKTINFO) {
+    in_pktinfo facts{};
+    std::memcpy(&facts, CMSG_DATA(&head), sizeof facts);
+    text = " interface " + std::to_string(facts.ipi_ifindex);
+    for (const in_addr& address : {facts.ipi_spec_dst, facts.ipi_addr}) {
+      text += std::string(" ") + inet_ntop(AF_INET, &address, host, sizeof host);
+    }
+  } else if (head.cmsg_level == IPPROTO_IPV6 && head.cmsg_type == IPV6_PKTINFO) {
+    in6_pktinfo facts{};
+    std::memcpy(&facts, CMSG_DATA(&head), sizeof facts);
+    text = " interface " + std::to_string(facts.ipi6_ifindex) + " " +
+           inet_ntop(AF_INET6, &facts.ipi6_addr, host, sizeof host);
+  }
+  return text;
+}
+
 std::string describe_error(const msghdr& message) {
   std::string text;
   auto& readable = const_cast<msghdr&>(message);
@@ -38,8 +59,8 @@ std::string describe_error(const msghdr& message) {
     const bool is_v4 = each->cmsg_level == IPPROTO_IP && each->cmsg_type == IP_RECVERR;
     const bool is_v6 = each->cmsg_level == IPPROTO_IPV6 && each->cmsg_type == IPV6_RECVERR;
     if (!is_v4 && !is_v6) {
-      text +=
-          " level " + std::to_string(each->cmsg_level) + " type " + std::to_string(each->cmsg_type);
+      text += " level " + std::to_string(each->cmsg_level) + " type " +
+              std::to_string(each->cmsg_type) + describe_facts(*each);
       continue;
     }
     struct {
@@ -289,6 +310,76 @@ void share_a_port() {
   for (const int each : {only, four, client, mapped}) close(each);
 }
 
+// The packet that comes back with a stamp: what of it is the same everywhere, and its payload.
+std::string describe_packet(const std::string& packet, bool is_v6) {
+  const std::size_t ip = is_v6 ? 40 : 20;
+  if (packet.size() < 14 + ip + 8) return "\"" + packet + "\"";
+  const auto byte = [&](std::size_t at) {
+    return std::to_string(static_cast<unsigned char>(packet[at])) + " ";
+  };
+  const std::size_t udp = 14 + ip;
+  std::string text = byte(12) + byte(13) + byte(14) + byte(is_v6 ? 20 : 23);
+  for (const std::size_t at : {udp + 2, udp + 3, udp + 4, udp + 5}) text += byte(at);
+  for (std::size_t at = udp - (is_v6 ? 32 : 8); at < udp; ++at) text += byte(at);
+  return text + "\"" + packet.substr(udp + 8) + "\"";
+}
+
+std::string stamped_packet(int fd, bool is_v6) {
+  static char bytes[2000];
+  alignas(cmsghdr) char control[512];
+  Name to;
+  iovec piece{.iov_base = bytes, .iov_len = sizeof bytes};
+  msghdr message{};
+  message.msg_name = to.name();
+  message.msg_namelen = *to.room();
+  message.msg_iov = &piece;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  const ssize_t size = recvmsg(fd, &message, MSG_ERRQUEUE);
+  if (size < 0) return strerrorname_np(errno);
+  return std::to_string(size) + " bytes, " +
+         describe_packet(std::string(bytes, static_cast<std::size_t>(size)), is_v6) + ", name " +
+         std::to_string(message.msg_namelen) + describe_error(message);
+}
+
+void stamp_departures(const Family& family) {
+  const bool is_v6 = family.family == AF_INET6;
+  const int receiver = open_socket(family);
+  bind_to(receiver, Name(family.loopback, 4000));
+  const int fd = open_socket(family);
+  constexpr int kFlags = SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
+  say("stamps", set_number(fd, SOL_SOCKET, SO_TIMESTAMPING, kFlags));
+  send_to(fd, "hello", Name(family.loopback, 4000));
+  tell("events", events_of(fd, POLLIN | POLLPRI));
+  tell("packet", stamped_packet(fd, is_v6));
+  tell("no more", stamped_packet(fd, is_v6));
+  say("urgent", set_number(fd, SOL_SOCKET, SO_SELECT_ERR_QUEUE, 1));
+  say("numbers", set_number(fd, SOL_SOCKET, SO_TIMESTAMPING, kFlags | SOF_TIMESTAMPING_OPT_ID));
+  send_to(fd, "one", Name(family.loopback, 4000));
+  send_to(fd, "two", Name(family.loopback, 4000));
+  tell("events", events_of(fd, POLLPRI));
+  tell("one", stamped_packet(fd, is_v6));
+  tell("two", stamped_packet(fd, is_v6));
+  say("facts", is_v6 ? set_number(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1)
+                     : set_number(fd, IPPROTO_IP, IP_PKTINFO, 1));
+  send_to(fd, "three", Name(family.loopback, 4000));
+  tell("without being asked for", stamped_packet(fd, is_v6));
+  say("with facts",
+      set_number(fd, SOL_SOCKET, SO_TIMESTAMPING, kFlags | SOF_TIMESTAMPING_OPT_CMSG));
+  send_to(fd, "asked", Name(family.loopback, 4000));
+  tell("asked for", stamped_packet(fd, is_v6));
+  set_number(fd, family.level, family.receive_errors, 1);
+  send_to(fd, "lost", Name(family.loopback, 9));
+  stamped_packet(fd, is_v6);
+  tell("of what was refused", error_of_queue(fd));
+  say("alone", set_number(fd, SOL_SOCKET, SO_TIMESTAMPING,
+                          kFlags | SOF_TIMESTAMPING_OPT_TSONLY | SOF_TIMESTAMPING_OPT_CMSG));
+  send_to(fd, "four", Name(family.loopback, 4000));
+  tell("without the packet", stamped_packet(fd, is_v6));
+  for (const int each : {receiver, fd}) close(each);
+}
+
 }  // namespace
 
 int main() {
@@ -301,7 +392,8 @@ int main() {
              {"dissolve", dissolve_association},
              {"large", send_large},
              {"shutdown", shut_down},
-             {"bind", bind_in_vain}}) {
+             {"bind", bind_in_vain},
+             {"stamps", stamp_departures}}) {
       tell(family.name, name);
       part(family);
     }
