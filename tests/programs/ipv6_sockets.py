@@ -33,7 +33,7 @@ def ask_by_udp():
         address = socket.getaddrinfo(name, PORT, family, socket.SOCK_DGRAM)[0][4]
         with socket.socket(family, socket.SOCK_DGRAM) as udp:
             udp.settimeout(1)
-            udp.sendto(b"x" * 60000, address)
+            udp.sendto(b"y" * 60000, address)
             data, peer = udp.recvfrom(70000)
             print(len(data), data[:3], *peer)
     with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as udp:

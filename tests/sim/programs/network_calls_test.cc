@@ -101,8 +101,8 @@ TEST_F(NetworkCallsTest, PythonsSocketsSpeakIpv6) {
   const std::string script = "{files}/ipv6_sockets.py";
   files_["ipv6_sockets.py"] = text_of(SIMBENCH_SOURCE_DIR "/tests/programs/ipv6_sockets.py");
   EXPECT_EQ(run_commands({{python, script, "ask"}}, {{python, script, "serve"}}, "python3")[0],
-            "60000 b'XXX' fd00::2 4000 0 0\n"
-            "60000 b'XXX' 10.0.0.2 4000\n"
+            "60000 b'YYY' fd00::2 4000 0 0\n"
+            "60000 b'YYY' 10.0.0.2 4000\n"
             "b'LINK' fe80::aff:fe00:2%eth0\n"
             "[Errno 111] Connection refused\n"
             "b'HOST1' fd00::2\n"
