@@ -21,19 +21,19 @@ inline constexpr int kMostAddresses6 = 2;  // of an interface
 
 // IPv4 in host byte order; 0: none.
 struct InterfaceFacts {
-  unsigned index;
-  char name[16];
-  std::uint32_t address;
-  std::uint32_t netmask;
-  std::uint32_t broadcast;
-  unsigned flags;
-  unsigned short hardware;  // ARPHRD_...
-  int mtu;
-  unsigned char mac[kMacBytes];
-  bool has_carrier;
-  int addresses6;  // how many
-  IpAddress address6[kMostAddresses6];
-  int prefix6;
+  unsigned index = 0;
+  char name[16] = {};
+  std::uint32_t address = 0;
+  std::uint32_t netmask = 0;
+  std::uint32_t broadcast = 0;
+  unsigned flags = 0;
+  unsigned short hardware = 0;  // ARPHRD_...
+  int mtu = 0;
+  unsigned char mac[kMacBytes] = {};
+  bool has_carrier = false;
+  int addresses6 = 0;  // how many
+  IpAddress address6[kMostAddresses6]{};
+  int prefix6 = 0;
 };
 
 int interfaces();

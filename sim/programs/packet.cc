@@ -1,7 +1,6 @@
 #include "sim/programs/packet.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <span>
 
@@ -108,7 +107,7 @@ std::vector<WirePacket> fragments_of(WirePacket packet) {
 void Reassembly::forget_old(SteadyTime now) {
   std::erase_if(partial_, [&](const auto& entry) {
     const Partial& each = entry.second;
-    const auto patience = std::chrono::seconds(is_by_ipv4(each.datagram) ? 30 : 60);
+    const Nanoseconds patience = from_ms(is_by_ipv4(each.datagram) ? 30e3 : 60e3);
     if (now - each.begun < patience) return false;
     bytes_ -= each.datagram.payload.size();
     return true;

@@ -167,6 +167,41 @@ void check_heads() {
   close(fd);
 }
 
+ssize_t send_from(int fd, const char* source, const Name& to) {
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(in6_pktinfo))] = {};
+  char byte = 'x';
+  iovec piece{.iov_base = &byte, .iov_len = 1};
+  msghdr message{};
+  message.msg_name = const_cast<sockaddr*>(to.name());
+  message.msg_namelen = to.size();
+  message.msg_iov = &piece;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  cmsghdr* head = CMSG_FIRSTHDR(&message);
+  head->cmsg_level = IPPROTO_IPV6;
+  head->cmsg_type = IPV6_PKTINFO;
+  head->cmsg_len = CMSG_LEN(sizeof(in6_pktinfo));
+  in6_pktinfo from{};
+  inet_pton(AF_INET6, source, &from.ipi6_addr);
+  from.ipi6_ifindex = if_nametoindex("eth0");
+  std::memcpy(CMSG_DATA(head), &from, sizeof from);
+  return sendmsg(fd, &message, 0);
+}
+
+void check_source() {
+  const int fd = udp6();
+  set_number(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1);
+  for (const std::string own : {"fd00::1", "fe80::aff:fe00:1"}) {
+    expect(send_from(fd, own.c_str(), Name("fd00::2", kPort)) == 1, "IPV6_PKTINFO names a source");
+    expect(has_input(fd), "an answer");
+    Name from;
+    expect(receive(fd, 0, from).to == own + "%2", "which comes to it");
+  }
+  expect_error(send_from(fd, "fd00::77", Name("fd00::2", kPort)), EINVAL, "one that is not ours");
+  close(fd);
+}
+
 void check_groups() {
   const int fd = udp6();
   const unsigned card = if_nametoindex("eth0");
@@ -342,6 +377,7 @@ int main(int count, char** words) {
   check_addresses();
   check_device();
   check_heads();
+  check_source();
   check_groups();
   check_loop();
   check_refusals();

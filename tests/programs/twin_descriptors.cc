@@ -139,11 +139,21 @@ void open_in_vain() {
   }
 }
 
+void open_pairs_in_vain() {
+  int ends[2];
+  say("a pair of IPv4", socketpair(AF_INET, SOCK_STREAM, 0, ends));
+  say("a pair of IPv6", socketpair(AF_INET6, SOCK_DGRAM, 0, ends));
+  say("a pair of no family", socketpair(250, SOCK_STREAM, 0, ends));
+  say("a local pair", socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
+  for (const int end : ends) close(end);
+}
+
 }  // namespace
 
 int main() {
   call_all_kinds();
   call_sockets();
   open_in_vain();
+  open_pairs_in_vain();
   return 0;
 }
