@@ -60,6 +60,7 @@ int HostStreams::bind(StreamSocket& stream, shim::Address address) {
     return EADDRINUSE;
   }
   stream.local = address;
+  stream.states_host = !shim::is_any(address.host);
   return 0;
 }
 
@@ -87,6 +88,7 @@ std::shared_ptr<StreamSocket> HostStreams::accept(StreamSocket& listener,
 Task<int> HostStreams::connect(StreamSocket& stream, shim::Address peer) {
   if (stream.state == StreamSocket::State::kConnecting) co_return EALREADY;
   if (stream.state == StreamSocket::State::kOpen) co_return EISCONN;
+  if (stream.error != 0) co_return std::exchange(stream.error, 0);
   if (stream.state != StreamSocket::State::kFresh) co_return ECONNABORTED;
   if (peer.family == AF_UNSPEC) co_return EAFNOSUPPORT;
   const bool is_ipv4 = shim::is_ipv4(peer.host);
@@ -186,7 +188,7 @@ Task<void> HostStreams::close(std::shared_ptr<StreamSocket> stream) {
 int HostStreams::readiness(const StreamSocket& stream) {
   switch (stream.state) {
     case StreamSocket::State::kFresh:
-      return POLLOUT | POLLHUP;
+      return POLLOUT | POLLHUP | (stream.error != 0 ? POLLERR : 0);
     case StreamSocket::State::kListening:
       return stream.accepted.empty() ? 0 : POLLIN;
     case StreamSocket::State::kConnecting:
@@ -284,8 +286,21 @@ Task<void> HostStreams::take(Segment segment) {
         Segment{.kind = SegmentKind::kRefused, .from = segment.to, .to = segment.from});
     co_return;
   }
-  if (!apply(*stream, segment)) stream->state = StreamSocket::State::kClosed;
+  const bool was_connecting = stream->state == StreamSocket::State::kConnecting;
+  if (!apply(*stream, segment)) {
+    stream->state = StreamSocket::State::kClosed;
+    if (was_connecting) begin_anew(*stream);
+  }
   stream->on_change();
+}
+
+// One that was refused may connect again, from its port.
+void HostStreams::begin_anew(StreamSocket& stream) {
+  stream.state = StreamSocket::State::kFresh;
+  stream.peer = {};
+  if (stream.states_host) return;
+  stream.local.host = stream.family == AF_INET ? shim::mapped(0) : shim::IpAddress{};
+  stream.local.scope = 0;
 }
 
 bool HostStreams::apply(StreamSocket& stream, Segment& segment) {

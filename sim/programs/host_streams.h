@@ -46,6 +46,7 @@ struct StreamSocket {
   State state = State::kFresh;
   int family = AF_INET;
   bool only_ipv6 = false;       // IPV6_V6ONLY
+  bool states_host = false;     // the program has bound it to its address
   std::uint32_t interface = 0;  // SO_BINDTODEVICE; 0: any
   shim::Address local{};
   shim::Address peer{};
@@ -136,6 +137,7 @@ class HostStreams {
   Task<void> transmit(const StreamSocket& stream, SegmentKind kind, Bytes data = {});
   Task<void> take(Segment segment);
   Task<void> take_opening(Segment segment);
+  static void begin_anew(StreamSocket& stream);
   // Whether the stream is still connected after it.
   static bool apply(StreamSocket& stream, Segment& segment);
   Task<void> give_credit(StreamSocket& stream, std::size_t at_least);

@@ -86,6 +86,24 @@ void refuse(const Family& family) {
   for (const int each : {other, third}) close(each);
 }
 
+// One socket until somebody listens.
+void try_again(const Family& family) {
+  const int fd = open_stream(family.family);
+  say("refused", connect_to(fd, Name(family.loopback, 4000)));
+  tell("peer", peer_name(fd));
+  tell("own", own_name(fd));
+  tell("events", events_of(fd, POLLIN | POLLOUT));
+  say("again", connect_to(fd, Name(family.loopback, 4000)));
+  const int listener = listener_on(family.family, family.loopback, 4000);
+  say("now", connect_to(fd, Name(family.loopback, 4000)));
+  tell("peer", peer_name(fd));
+  const int later = open_stream(family.family, SOCK_NONBLOCK);
+  say("in the background", connect_to(later, Name(family.loopback, 9)));
+  tell("events", events_of(later, POLLOUT));
+  say("its end", connect_to(later, Name(family.loopback, 9)));
+  for (const int each : {fd, listener, later}) close(each);
+}
+
 void share_a_port() {
   const int six = listener_on(AF_INET6, "::", 4000);
   const int four = open_stream(AF_INET);
@@ -133,6 +151,8 @@ int main() {
     connect_both(family);
     tell(family.name, "refuse");
     refuse(family);
+    tell(family.name, "again");
+    try_again(family);
   }
   share_a_port();
   keep_apart();
