@@ -139,26 +139,28 @@ const std::string& program_of(const Child::Settings& settings) {
 rlim_t cpu_seconds(std::chrono::milliseconds patience) {
   const auto whole = std::chrono::ceil<std::chrono::seconds>(patience * Child::kMostCpu);
   return static_cast<rlim_t>(std::max<std::chrono::seconds::rep>(1, whole.count()));
-  // Programs of a package start each other by their names.
-  std::string search_path(const Child::Settings& settings) {
-    const std::string folder = std::filesystem::path(program_of(settings)).parent_path().string();
-    std::string path = "/usr/sbin:/usr/bin:/sbin:/bin";
-    for (const char* each : {"/usr/sbin", "/usr/bin", "/sbin", "/bin"}) {
-      if (folder == each) return path;
-    }
-    return folder.empty() ? path : folder + ":" + path;
-  }
+}
 
-  std::vector<std::string> environment_of(const Child::Settings& settings) {
-    std::map<std::string, std::string> all = {
-        {"PATH", search_path(settings)}, {"TZ", "UTC0"}, {"LC_ALL", "C"}};
-    for (const auto& [name, value] : settings.environment) all[name] = value;
-    all["LD_PRELOAD"] = settings.shim;
-    all[shim::kLinkVariable] = std::to_string(kLink);
-    std::vector<std::string> environment;
-    for (const auto& [name, value] : all) environment.push_back(fmt::format("{}={}", name, value));
-    return environment;
+// Programs of a package start each other by their names.
+std::string search_path(const Child::Settings& settings) {
+  const std::string folder = std::filesystem::path(program_of(settings)).parent_path().string();
+  std::string path = "/usr/sbin:/usr/bin:/sbin:/bin";
+  for (const char* each : {"/usr/sbin", "/usr/bin", "/sbin", "/bin"}) {
+    if (folder == each) return path;
   }
+  return folder.empty() ? path : folder + ":" + path;
+}
+
+std::vector<std::string> environment_of(const Child::Settings& settings) {
+  std::map<std::string, std::string> all = {
+      {"PATH", search_path(settings)}, {"TZ", "UTC0"}, {"LC_ALL", "C"}};
+  for (const auto& [name, value] : settings.environment) all[name] = value;
+  all["LD_PRELOAD"] = settings.shim;
+  all[shim::kLinkVariable] = std::to_string(kLink);
+  std::vector<std::string> environment;
+  for (const auto& [name, value] : all) environment.push_back(fmt::format("{}={}", name, value));
+  return environment;
+}
 
 }  // namespace
 

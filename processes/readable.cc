@@ -64,7 +64,7 @@ void add_libraries_of(const fs::path& program, std::vector<std::string>& paths) 
 
 void add_listed(const std::map<std::string, std::string>& environment,
                 std::vector<std::string>& paths) {
-  for (const char* variable : {"LD_LIBRARY_PATH", "PYTHONPATH"}) {
+  for (const char* variable : {"LD_LIBRARY_PATH", "PATH", "PYTHONPATH"}) {
     const auto found = environment.find(variable);
     if (found == environment.end()) continue;
     std::istringstream folders(found->second);

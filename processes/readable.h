@@ -5,7 +5,7 @@
 //   its words            each file or folder that a word names by an absolute path, of a file the
 //                        folder too: scripts have modules
 //   libraries            /lib, /lib32, /lib64, /usr, /bin, /sbin, the folders of the environment's
-//                        LD_LIBRARY_PATH and PYTHONPATH
+//                        LD_LIBRARY_PATH, PATH and PYTHONPATH
 //   of /etc              what the C library, Python and TLS look at (kSystemFiles)
 //   of /dev              null, zero, full
 //   of /proc             what it is itself (processes/own_process_files.h)

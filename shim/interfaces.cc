@@ -16,39 +16,70 @@
 
 namespace simbench::shim {
 
+int interfaces() {
+  const int all = 1 + static_cast<int>(identity().cards);
+  return all < kMostInterfaces ? all : kMostInterfaces;
+}
+
+namespace {
+
+InterfaceFacts loopback() {
+  InterfaceFacts facts{};
+  facts.index = kLoopbackInterface;
+  snprintf(facts.name, sizeof facts.name, "lo");
+  facts.address = INADDR_LOOPBACK;
+  facts.netmask = 0xFF000000;
+  facts.flags = IFF_UP | IFF_LOOPBACK | IFF_RUNNING;
+  facts.hardware = ARPHRD_LOOPBACK;
+  facts.mtu = static_cast<int>(kLoopbackMtu);
+  facts.has_carrier = true;
+  facts.addresses6 = 1;
+  facts.address6[0] = kLoopback6;
+  facts.prefix6 = 128;
+  return facts;
+}
+
+IpAddress own_unique_local() {
+  return unique_local(identity().address - identity().first_address + 1);
+}
+
+InterfaceFacts card(std::uint32_t number) {
+  InterfaceFacts facts{};
+  facts.index = kFirstCard + number;
+  snprintf(facts.name, sizeof facts.name, "eth%u", number);
+  facts.has_carrier = (identity().carriers & (1U << number)) != 0;
+  facts.flags = IFF_UP | IFF_BROADCAST | IFF_MULTICAST;
+  if (facts.has_carrier) facts.flags |= IFF_RUNNING;
+  facts.hardware = ARPHRD_ETHER;
+  facts.mtu = static_cast<int>(kLinkMtu);
+  write_card_address(identity().address, number, facts.mac);
+  if (number > 0) return facts;
+  facts.address = identity().address;
+  facts.netmask = identity().netmask;
+  facts.broadcast = facts.address | ~facts.netmask;
+  facts.addresses6 = 2;
+  facts.address6[0] = own_unique_local();
+  facts.address6[1] = link_local(identity().address);
+  facts.prefix6 = 64;
+  return facts;
+}
+
+}  // namespace
+
 InterfaceFacts interface_at(int place) {
-  if (place == 0) {
-    return {1,
-            "lo",
-            INADDR_LOOPBACK,
-            0xFF000000,
-            0,
-            IFF_UP | IFF_LOOPBACK | IFF_RUNNING,
-            ARPHRD_LOOPBACK,
-            65'536,
-            {}};
-  }
-  const std::uint32_t address = identity().address;
-  const std::uint32_t netmask = identity().netmask;
-  InterfaceFacts card{kInterface,
-                      "eth0",
-                      address,
-                      netmask,
-                      address | ~netmask,
-                      IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST,
-                      ARPHRD_ETHER,
-                      1'500,
-                      {0x02, 0x00}};
-  const std::uint32_t number = htonl(address);
-  memcpy(card.mac + 2, &number, sizeof number);
-  return card;
+  return place == 0 ? loopback() : card(static_cast<std::uint32_t>(place - 1));
+}
+
+bool is_own_address(const IpAddress& address) {
+  return address == mapped(identity().address) || address == own_unique_local() ||
+         address == link_local(identity().address);
 }
 
 namespace {
 
 template <class Matches>
 bool find_matching(Matches matches, InterfaceFacts& found) {
-  for (int i = 0; i < kInterfaces; ++i) {
+  for (int i = 0; i < interfaces(); ++i) {
     found = interface_at(i);
     if (matches(found)) return true;
   }
@@ -83,15 +114,20 @@ void store(sockaddr& place, const Address& address) {
   memcpy(&place, &address, sizeof address);
 }
 
+// Those that have an address.
 int list_interfaces(ifconf& list) {
-  const int room = list.ifc_buf == nullptr ? kInterfaces : list.ifc_len / int{sizeof(ifreq)};
-  const int count = room < kInterfaces ? room : kInterfaces;
-  for (int i = 0; i < count && list.ifc_buf != nullptr; ++i) {
+  const int room = list.ifc_buf == nullptr ? kMostInterfaces : list.ifc_len / int{sizeof(ifreq)};
+  int count = 0;
+  for (int i = 0; i < interfaces() && count < room; ++i) {
     const InterfaceFacts facts = interface_at(i);
-    ifreq& entry = list.ifc_req[i];
-    entry = {};
-    snprintf(entry.ifr_name, IFNAMSIZ, "%s", facts.name);
-    store(entry.ifr_addr, internet(facts.address));
+    if (facts.address == 0) continue;
+    if (list.ifc_buf != nullptr) {
+      ifreq& entry = list.ifc_req[count];
+      entry = {};
+      snprintf(entry.ifr_name, IFNAMSIZ, "%s", facts.name);
+      store(entry.ifr_addr, internet(facts.address));
+    }
+    ++count;
   }
   list.ifc_len = count * int{sizeof(ifreq)};
   return 0;
@@ -117,7 +153,7 @@ int ask_ethtool(const InterfaceFacts& facts, const ifreq& request) {
   if (request.ifr_data == nullptr) return refuse(EFAULT);
   std::uint32_t command = 0;
   memcpy(&command, request.ifr_data, sizeof command);
-  if (command != ETHTOOL_GET_TS_INFO || facts.index != kInterface) return refuse(EOPNOTSUPP);
+  if (command != ETHTOOL_GET_TS_INFO || facts.index < kFirstCard) return refuse(EOPNOTSUPP);
   return state_stamping(*reinterpret_cast<ethtool_ts_info*>(request.ifr_data));
 }
 
@@ -144,7 +180,7 @@ int get_stamping(hwtstamp_config& config) {
 }
 
 int ask_card_stamping(const InterfaceFacts& facts, unsigned long what, const ifreq& request) {
-  if (facts.index != kInterface || identity().has_card_clock == 0) return refuse(EOPNOTSUPP);
+  if (facts.index < kFirstCard || identity().has_card_clock == 0) return refuse(EOPNOTSUPP);
   if (request.ifr_data == nullptr) return refuse(EFAULT);
   auto& config = *reinterpret_cast<hwtstamp_config*>(request.ifr_data);
   return what == SIOCSHWTSTAMP ? set_stamping(config) : get_stamping(config);
@@ -158,6 +194,9 @@ int ask_interface(unsigned long what, ifreq& request) {
     return 0;
   }
   if (!find_interface(request.ifr_name, facts)) return -1;
+  const bool asks_for_address =
+      what == SIOCGIFADDR || what == SIOCGIFNETMASK || what == SIOCGIFBRDADDR;
+  if (asks_for_address && facts.address == 0) return refuse(EADDRNOTAVAIL);
   switch (what) {
     case SIOCGIFINDEX:
       request.ifr_ifindex = static_cast<int>(facts.index);
@@ -222,14 +261,14 @@ SIMBENCH_CALL char* if_indextoname(unsigned int index, char* name) {
 
 SIMBENCH_CALL struct if_nameindex* if_nameindex() {
   if (!is_simulated()) return SIMBENCH_REAL(if_nameindex)();
-  static struct if_nameindex list[kInterfaces + 1];
-  static char names[kInterfaces][IFNAMSIZ];
-  for (int i = 0; i < kInterfaces; ++i) {
+  static struct if_nameindex list[kMostInterfaces + 1];
+  static char names[kMostInterfaces][IFNAMSIZ];
+  for (int i = 0; i < interfaces(); ++i) {
     const InterfaceFacts facts = interface_at(i);
     snprintf(names[i], IFNAMSIZ, "%s", facts.name);
     list[i] = {facts.index, names[i]};
   }
-  list[kInterfaces] = {};
+  list[interfaces()] = {};
   return list;
 }
 
@@ -239,17 +278,40 @@ SIMBENCH_CALL void if_freenameindex(struct if_nameindex* list) {
 
 namespace {
 
-// An interface as getifaddrs() lists it: its card, and its address.
+// An interface as getifaddrs() lists it: its card, and its addresses.
 struct Listed {
   ifaddrs card;
   ifaddrs internet;
+  ifaddrs internet6[kMostAddresses6];
   char name[IFNAMSIZ];
   sockaddr_ll link;
   sockaddr_in address;
   sockaddr_in netmask;
   sockaddr_in broadcast;
+  sockaddr_in6 address6[kMostAddresses6];
+  sockaddr_in6 netmask6;
 };
-Listed listed[kInterfaces];
+Listed listed[kMostInterfaces];
+
+sockaddr_in6 internet6(const IpAddress& address, unsigned scope) {
+  sockaddr_in6 result{};
+  result.sin6_family = AF_INET6;
+  memcpy(&result.sin6_addr, &address, sizeof result.sin6_addr);
+  result.sin6_scope_id = scope;
+  return result;
+}
+
+void fill_listed6(Listed& entry, const InterfaceFacts& facts) {
+  entry.netmask6 = internet6({}, 0);
+  for (int i = 0; i < facts.prefix6 / 8; ++i) entry.netmask6.sin6_addr.s6_addr[i] = 0xFF;
+  for (int i = 0; i < facts.addresses6; ++i) {
+    const IpAddress& address = facts.address6[i];
+    entry.address6[i] = internet6(address, is_link_local(address) ? facts.index : 0);
+    entry.internet6[i] = entry.card;
+    entry.internet6[i].ifa_addr = reinterpret_cast<sockaddr*>(&entry.address6[i]);
+    entry.internet6[i].ifa_netmask = reinterpret_cast<sockaddr*>(&entry.netmask6);
+  }
+}
 
 void fill_listed(Listed& entry, const InterfaceFacts& facts) {
   entry = {};
@@ -271,19 +333,31 @@ void fill_listed(Listed& entry, const InterfaceFacts& facts) {
   if ((facts.flags & IFF_BROADCAST) != 0) {
     entry.internet.ifa_broadaddr = reinterpret_cast<sockaddr*>(&entry.broadcast);
   }
+  fill_listed6(entry, facts);
 }
 
 }  // namespace
 
-// The list is the same at each call, and lives as long as the program.
+// The cards, then their addresses by IPv4, then by IPv6. The list is the same at each call, and
+// lives as long as the program.
 SIMBENCH_CALL int getifaddrs(ifaddrs** list) {
   if (!is_simulated()) return SIMBENCH_REAL(getifaddrs)(list);
-  for (int i = 0; i < kInterfaces; ++i) fill_listed(listed[i], interface_at(i));
-  for (int i = 0; i < kInterfaces; ++i) {
-    listed[i].card.ifa_next = i + 1 < kInterfaces ? &listed[i + 1].card : &listed[0].internet;
-    listed[i].internet.ifa_next = i + 1 < kInterfaces ? &listed[i + 1].internet : nullptr;
+  ifaddrs** next = list;
+  const auto append = [&next](ifaddrs& entry) {
+    *next = &entry;
+    next = &entry.ifa_next;
+  };
+  for (int i = 0; i < interfaces(); ++i) {
+    fill_listed(listed[i], interface_at(i));
+    append(listed[i].card);
   }
-  *list = &listed[0].card;
+  for (int i = 0; i < interfaces(); ++i) {
+    if (interface_at(i).address != 0) append(listed[i].internet);
+  }
+  for (int i = 0; i < interfaces(); ++i) {
+    for (int k = 0; k < interface_at(i).addresses6; ++k) append(listed[i].internet6[k]);
+  }
+  *next = nullptr;
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "shim/card.h"
+#include "shim/descriptor_errors.h"
 #include "shim/interfaces.h"
 #include "shim/link.h"
 #include "shim/pulses.h"
@@ -44,12 +45,18 @@ SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
     if (has_world() && asks_for_stamp) give_up("ioctl() SIOCGSTAMP");
     return real_ioctl(fd, what, argument);
   }
-  if (is_about_interfaces(what)) return interface_ioctl(what, argument);
   const Kind kind = kind_of(fd);
+  const bool is_of_world = kind == Kind::kSocket || kind == Kind::kStream;
+  if (is_about_interfaces(what)) {
+    const bool is_any_socket = is_of_world || kind == Kind::kNetlink || kind == Kind::kLocal;
+    return is_any_socket ? interface_ioctl(what, argument) : refuse_descriptor(fd, ENOTTY);
+  }
   if (kind == Kind::kCard && !is_of_any(what)) return card_ioctl(fd, what, argument);
   if (kind == Kind::kPulses && !is_of_any(what)) return pulse_ioctl(fd, what, argument);
-  if ((kind == Kind::kSocket || kind == Kind::kStream) && what == FIONREAD) {
-    return count_input(fd, *static_cast<int*>(argument));
+  if (is_of_world && what == FIONREAD) return count_input(fd, *static_cast<int*>(argument));
+  if (is_of_world && what == SIOCOUTQ) {
+    *static_cast<int*>(argument) = 0;  // what is sent has left
+    return 0;
   }
   // The rest, FIONBIO among it, is the descriptor's own.
   return real_ioctl(fd, what, argument);

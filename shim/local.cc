@@ -223,6 +223,11 @@ void note_pipe(int fd) {
 void local_closed() { told(0); }
 
 SIMBENCH_CALL int socketpair(int domain, int type, int protocol, int ends[2]) {
+  if (is_simulated() && domain != AF_UNIX) {
+    const bool is_known =
+        domain == AF_INET || domain == AF_INET6 || domain == AF_PACKET || domain == AF_NETLINK;
+    return refuse(is_known ? EOPNOTSUPP : EAFNOSUPPORT);
+  }
   const int result = SIMBENCH_REAL(socketpair)(domain, type, protocol, ends);
   if (result < 0 || !is_simulated()) return result;
   set_kind(ends[0], Kind::kLocal);

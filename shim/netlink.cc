@@ -1,7 +1,9 @@
 #include "shim/netlink.h"
 
+#include <arpa/inet.h>
 #include <errno.h>
 #include <linux/if.h>
+#include <linux/if_addr.h>
 #include <linux/netlink.h>
 #include <linux/rtnetlink.h>
 #include <poll.h>
@@ -50,7 +52,7 @@ class NetlinkAnswer {
   }
 
  private:
-  alignas(NLMSG_ALIGNTO) unsigned char bytes_[512];
+  alignas(NLMSG_ALIGNTO) unsigned char bytes_[4096];
   std::size_t size_;
   std::size_t begin_;
 };
@@ -81,18 +83,57 @@ NetlinkSocket* take_place() {
 
 void state_link(const InterfaceFacts& facts, const nlmsghdr& question, std::uint16_t flags,
                 NetlinkAnswer& answer) {
-  constexpr unsigned char kUp = 6;  // IF_OPER_UP
+  const unsigned char state = facts.has_carrier ? 6 : 2;  // IF_OPER_UP, IF_OPER_DOWN
   answer.begin(RTM_NEWLINK, flags, question);
   ifinfomsg link{};
   link.ifi_type = facts.hardware;
   link.ifi_index = static_cast<int>(facts.index);
-  link.ifi_flags = facts.flags | IFF_LOWER_UP;
+  link.ifi_flags = facts.flags;
+  if (facts.has_carrier) link.ifi_flags |= IFF_LOWER_UP;
   answer.add(&link, sizeof link);
   answer.attribute(IFLA_IFNAME, facts.name, strlen(facts.name) + 1);
   answer.attribute(IFLA_ADDRESS, facts.mac, kMacBytes);
   answer.attribute(IFLA_MTU, &facts.mtu, sizeof facts.mtu);
-  answer.attribute(IFLA_OPERSTATE, &kUp, sizeof kUp);
+  answer.attribute(IFLA_OPERSTATE, &state, sizeof state);
   answer.end();
+}
+
+void state_address(const InterfaceFacts& facts, const nlmsghdr& question, NetlinkAnswer& answer) {
+  if (facts.address == 0) return;
+  answer.begin(RTM_NEWADDR, NLM_F_MULTI, question);
+  ifaddrmsg head{};
+  head.ifa_family = AF_INET;
+  head.ifa_prefixlen = static_cast<unsigned char>(__builtin_popcount(facts.netmask));
+  head.ifa_flags = IFA_F_PERMANENT;
+  head.ifa_scope = facts.index == kLoopbackInterface ? RT_SCOPE_HOST : RT_SCOPE_UNIVERSE;
+  head.ifa_index = facts.index;
+  answer.add(&head, sizeof head);
+  const std::uint32_t address = htonl(facts.address);
+  const std::uint32_t broadcast = htonl(facts.broadcast);
+  answer.attribute(IFA_ADDRESS, &address, sizeof address);
+  answer.attribute(IFA_LOCAL, &address, sizeof address);
+  if (facts.broadcast != 0) answer.attribute(IFA_BROADCAST, &broadcast, sizeof broadcast);
+  answer.attribute(IFA_LABEL, facts.name, strlen(facts.name) + 1);
+  answer.end();
+}
+
+void state_addresses6(const InterfaceFacts& facts, const nlmsghdr& question,
+                      NetlinkAnswer& answer) {
+  for (int i = 0; i < facts.addresses6; ++i) {
+    const IpAddress& address = facts.address6[i];
+    answer.begin(RTM_NEWADDR, NLM_F_MULTI, question);
+    ifaddrmsg head{};
+    head.ifa_family = AF_INET6;
+    head.ifa_prefixlen = static_cast<unsigned char>(facts.prefix6);
+    head.ifa_flags = IFA_F_PERMANENT;
+    head.ifa_scope = is_loopback(address)     ? RT_SCOPE_HOST
+                     : is_link_local(address) ? RT_SCOPE_LINK
+                                              : RT_SCOPE_UNIVERSE;
+    head.ifa_index = facts.index;
+    answer.add(&head, sizeof head);
+    answer.attribute(IFA_ADDRESS, &address, sizeof address);
+    answer.end();
+  }
 }
 
 void state_error(int error, const nlmsghdr& question, NetlinkAnswer& answer) {
@@ -112,7 +153,7 @@ void state_end(const nlmsghdr& question, NetlinkAnswer& answer) {
 void state_links(const nlmsghdr& question, const ifinfomsg& which, const char* name,
                  NetlinkAnswer& answer) {
   if ((question.nlmsg_flags & NLM_F_DUMP) == NLM_F_DUMP) {
-    for (int i = 0; i < kInterfaces; ++i) {
+    for (int i = 0; i < interfaces(); ++i) {
       state_link(interface_at(i), question, NLM_F_MULTI, answer);
     }
     return state_end(question, answer);
@@ -123,6 +164,17 @@ void state_links(const nlmsghdr& question, const ifinfomsg& which, const char* n
                             : find_interface(static_cast<unsigned>(which.ifi_index), facts);
   if (!is_known) return state_error(ENODEV, question, answer);
   state_link(facts, question, 0, answer);
+}
+
+// The addresses of one family, or of both.
+void state_addresses(const nlmsghdr& question, unsigned char family, NetlinkAnswer& answer) {
+  for (int i = 0; i < interfaces() && family != AF_INET6; ++i) {
+    state_address(interface_at(i), question, answer);
+  }
+  for (int i = 0; i < interfaces() && family != AF_INET; ++i) {
+    state_addresses6(interface_at(i), question, answer);
+  }
+  state_end(question, answer);
 }
 
 // The attribute IFLA_IFNAME of a question, if it has one.
@@ -149,19 +201,28 @@ void reply(const unsigned char* bytes, std::size_t size, NetlinkAnswer& answer) 
     memcpy(&which, bytes + NLMSG_HDRLEN, sizeof which);
     return state_links(question, which, name_in(bytes, size), answer);
   }
-  if ((question.nlmsg_flags & NLM_F_DUMP) != 0) return state_end(question, answer);
+  const bool wants_all = (question.nlmsg_flags & NLM_F_DUMP) != 0;
+  if (question.nlmsg_type == RTM_GETADDR && wants_all) {
+    const unsigned char family = size > NLMSG_HDRLEN ? bytes[NLMSG_HDRLEN] : 0;
+    return state_addresses(question, family, answer);
+  }
+  if (wants_all) return state_end(question, answer);
   state_error(EOPNOTSUPP, question, answer);
 }
 
 }  // namespace
 
 int open_netlink(int type, int protocol) {
+  const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (kind != SOCK_RAW && kind != SOCK_DGRAM) return refuse(ESOCKTNOSUPPORT);
   NetlinkSocket* place = take_place();
   if (protocol != NETLINK_ROUTE || place == nullptr) return refuse(EPROTONOSUPPORT);
   const int fd =
       open_descriptor(Kind::kNetlink, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
   for (NetlinkSocket& each : places) each.is_taken &= each.number != number_of(fd);
+  state_of(fd) = {.family = AF_NETLINK, .type = kind, .protocol = protocol};
+  forget_options(fd);
   place->is_taken = true;
   place->number = number_of(fd);
   place->answer.clear();
@@ -213,6 +274,15 @@ int netlink_name(sockaddr* name, socklen_t* size) {
   own.nl_pid = static_cast<std::uint32_t>(identity().process);
   memcpy(name, &own, *size < sizeof own ? *size : sizeof own);
   *size = sizeof own;
+  return 0;
+}
+
+// The kernel.
+int netlink_peer_name(sockaddr* name, socklen_t* size) {
+  sockaddr_nl kernel{};
+  kernel.nl_family = AF_NETLINK;
+  memcpy(name, &kernel, *size < sizeof kernel ? *size : sizeof kernel);
+  *size = sizeof kernel;
   return 0;
 }
 

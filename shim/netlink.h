@@ -1,4 +1,4 @@
-// A routing socket (NETLINK_ROUTE): it says that the host's interfaces are up when asked for links,
+// A routing socket (NETLINK_ROUTE): it states the host's links and addresses when asked for them,
 // knows nothing else, and is silent ever after, as nothing happens to them.
 //
 // Its descriptor is an event counter, readable while an answer waits: a wait looks at it as at any
@@ -25,5 +25,6 @@ int open_netlink(int type, int protocol);
 ssize_t netlink_send(int fd, const msghdr& message);
 ssize_t netlink_receive(int fd, msghdr& message, int flags);
 int netlink_name(sockaddr* name, socklen_t* size);
+int netlink_peer_name(sockaddr* name, socklen_t* size);
 
 }  // namespace simbench::shim

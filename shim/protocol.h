@@ -38,7 +38,8 @@ inline constexpr char kFolderVariable[] = "SIMBENCH_FOLDER";
 inline constexpr std::int64_t kWorldBegin = 1'830'297'600'000'000'000;
 // What a program sees its host's folder as (shim/paths.h).
 inline constexpr char kFolder[] = "/files";
-inline constexpr std::size_t kMostData = 65536;
+// The largest datagram, and what is said of it.
+inline constexpr std::size_t kMostData = 65536 + 512;
 // The descriptor of the clock's page, where only the clock is the world's.
 inline constexpr int kClockPage = 201;
 
@@ -55,26 +56,30 @@ enum class Call : std::uint32_t {
   kSetTimer,     // fd, a: 1 if absolute, data: TimerSetting -> data: the setting before
   kReadTimer,    // fd -> value: expirations since the last; EAGAIN if none
   kQueryTimer,   // fd -> data: TimerSetting
-  kOpenSocket,   // fd, a: SOCK_DGRAM or SOCK_STREAM
+  kOpenSocket,   // fd, a: SOCK_DGRAM, SOCK_STREAM or SOCK_RAW, b: the family; of a packet socket,
+                 // the protocol above its lower 16 bits
   kBind,         // fd, data: Address
-  kConnect,      // fd, data: Address; a stream: EINPROGRESS
-  kSetOption,    // fd, a: SocketOption, b: value
+  kConnect,      // fd, data: Address, of no family: ends the association; a stream: EINPROGRESS
+  kSetOption,    // fd, a: SocketOption, and kOfIpv6 if it is of that level, b: value
   kName,         // fd -> data: Address
   kPeerName,     // fd -> data: Address; ENOTCONN
-  kSend,     // fd, a: StampKind as bits of this departure, -1: the socket's, data: Address (port 0:
-             // the peer), then the payload -> value: of a stream, how much of it was taken
-  kReceive,  // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload;
+  kSend,  // fd, a: StampKind as bits of this departure, -1: the socket's, data: Departure, then the
+          // payload -> value: of a stream, how much of it was taken
+  kReceive,  // fd, a: ReceiveFlag -> data: Arrival, then payload; ESHUTDOWN: nothing more comes;
              // of a stream, b: how many at most -> data: bytes, none at its end
   kClose,    // fd
   kRandom,   // a: how many -> data: bytes
-  kJoin,     // fd, a: 1: join, 0: leave, b: the group's address
-  kReadCard,       // a: how many -> data: CardSample[]
-  kListen,         // fd, a: how many may wait
-  kAccept,         // fd, a: the new descriptor -> data: Address of the peer; EAGAIN
-  kShutDown,       // fd, a: SHUT_RD, SHUT_WR or SHUT_RDWR
-  kSocketError,    // fd -> value: SO_ERROR, which is cleared
-  kCountInput,     // fd -> value: bytes that the next read would give
-  kLocalActivity,  // another program of the host may have something to read, or a peer less
+  kJoin,     // fd, a: 1: join, 0: leave, b: of a packet socket, PACKET_MR_..., data: Address of the
+             // group, its scope the interface
+  kFilterArrivals,  // fd, data: struct sock_filter[], none: all pass
+  kCountArrivals,   // fd, a packet socket -> data: ArrivalCount, from the last on
+  kReadCard,        // a: how many -> data: CardSample[]
+  kListen,          // fd, a: how many may wait
+  kAccept,          // fd, a: the new descriptor -> data: Address of the peer; EAGAIN
+  kShutDown,        // fd, a: SHUT_RD, SHUT_WR or SHUT_RDWR
+  kSocketError,     // fd -> value: SO_ERROR, which is cleared
+  kCountInput,      // fd -> value: bytes that the next read would give
+  kLocalActivity,   // another program of the host may have something to read, or a peer less
   kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
                   // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
   // Timers that make signals, of alarm(), setitimer() and timer_create(); `fd` is a number below 0
@@ -125,7 +130,19 @@ enum class SocketOption : std::int64_t {
   kUrgentErrors,    // SO_SELECT_ERR_QUEUE
   kAllGroups,       // IP_MULTICAST_ALL
   kLoopGroups,      // IP_MULTICAST_LOOP
+  kOnlyIpv6,        // IPV6_V6ONLY
+  kInterface,       // SO_BINDTODEVICE: its number, 0: any
+  kGroupInterface,  // IP_MULTICAST_IF: its number, 0: any
+  kHops,            // IP_TTL
+  kGroupHops,       // IP_MULTICAST_TTL
+  kTrafficClass,    // IP_TOS
+  kMtuDiscovery,    // IP_MTU_DISCOVER
+  kDontFragment,    // IPV6_DONTFRAG
+  kReceiveErrors,   // IP_RECVERR
+  kIgnoreOutgoing,  // PACKET_IGNORE_OUTGOING
 };
+// Beside an option of which both protocols have one each.
+inline constexpr std::int64_t kOfIpv6 = 1 << 16;
 
 enum class HostDevice : std::int64_t {
   kCard,    // the network card's clock, /dev/ptp0
@@ -175,7 +192,7 @@ struct Identity {
   std::int32_t process = 0;         // what getpid() is
   std::int32_t parent = 0;          // what getppid() is
   std::int32_t thread = 0;          // what gettid() is
-  std::uint32_t address = 0;        // the host's; addresses are in host byte order
+  std::uint32_t address = 0;        // the host's by IPv4, in host byte order; shim/addresses.h
   std::uint32_t netmask = 0;        // of its network
   std::uint32_t first_address = 0;  // of "host0"
   std::uint32_t hosts = 0;
@@ -183,12 +200,42 @@ struct Identity {
   std::int32_t most_card_rate = 0;   // ppb, what the card's driver states
   std::uint32_t has_pulse_line = 0;  // 0 or 1
   std::uint32_t only_clock = 0;      // 0 or 1: sockets, waits and chance are the machine's
+  std::uint32_t cards = 1;           // eth0 and on; the first alone has addresses
+  std::uint32_t carriers = 1;        // those whose cable leads somewhere, as bits
 };
 
+// In network byte order; of IPv4 as IPv6 maps it, ::ffff:a.b.c.d. All zero, or mapped zero: any.
+struct IpAddress {
+  std::uint8_t bytes[16]{};
+
+  friend bool operator==(const IpAddress&, const IpAddress&) = default;
+};
+
+// A socket's address. In a packet socket's the host is a PacketAddress, the port the protocol.
 struct Address {
-  std::uint32_t host;  // IPv4, host byte order; 0: any
-  std::uint16_t port;  // host byte order
-  std::uint16_t reserved;
+  IpAddress host{};
+  std::uint32_t scope = 0;   // the number of an interface; 0: not said
+  std::uint16_t port = 0;    // host byte order
+  std::uint16_t family = 0;  // AF_INET, AF_INET6 or AF_PACKET; AF_UNSPEC: no address
+
+  friend bool operator==(const Address&, const Address&) = default;
+};
+
+struct PacketAddress {
+  std::uint8_t card[6]{};
+  std::uint8_t kind = 0;  // PACKET_HOST, ...
+  std::uint8_t reserved[9]{};
+};
+
+struct Departure {
+  Address to{};      // of no family: the peer
+  Address source{};  // of no family: as ever; its scope: the interface
+};
+
+enum ReceiveFlag : std::int64_t {
+  kFromErrorQueue = 1,
+  kLeaveIt = 2,
+  kMayWait = 4,  // the caller waits if there is nothing
 };
 
 // As struct pollfd.
@@ -255,13 +302,27 @@ struct CardSample {
   std::int64_t after;
 };
 
+// A datagram or a frame; in the error queue what has left, or what was refused: its payload is
+// then that of the datagram which nobody took.
 struct Arrival {
-  Address from;
-  Address to;
-  std::int64_t system;    // the software stamp; kNoStamp: none
-  std::int64_t hardware;  // the card's; kNoStamp: none
-  std::uint32_t length;   // of the payload, also where less of it follows
-  std::uint32_t number;   // of the datagrams that the socket sent; 0 for arrivals
+  Address from{};
+  Address to{};                       // of what was refused, also who said that
+  std::int64_t system = INT64_MIN;    // the software stamp; kNoStamp: none
+  std::int64_t hardware = INT64_MIN;  // the card's; kNoStamp: none
+  std::uint32_t length = 0;           // of the payload, also where less of it follows
+  std::uint32_t number = 0;  // of the stamped datagrams that the socket sent; 0 for arrivals
+  std::uint32_t interface = 0;
+  std::uint32_t info = 0;   // ee_info
+  std::uint16_t error = 0;  // ee_errno; 0 for arrivals
+  std::uint8_t origin = 0;  // SO_EE_ORIGIN_...; 0 for arrivals
+  std::uint8_t hops = 0;    // that it may go on for
+  std::uint8_t traffic_class = 0;
+  std::uint8_t reserved[3]{};
+};
+
+struct ArrivalCount {
+  std::uint32_t arrived = 0;
+  std::uint32_t dropped = 0;
 };
 
 inline constexpr std::int64_t kNoStamp = INT64_MIN;

@@ -154,8 +154,8 @@ void begin_files() {
   // Without a time of making, that of the last change comes later than some files.
   const bool has_birth = (status.stx_mask & STATX_BTIME) != 0;
   born = ns_of(has_birth ? status.stx_btime : status.stx_ctime);
-  machine_user = status.stx_uid;
-  machine_group = status.stx_gid;
+  machine_user = static_cast<std::uint32_t>(machine_call(SYS_geteuid));
+  machine_group = static_cast<std::uint32_t>(machine_call(SYS_getegid));
 }
 
 bool find_modified(int fd, timespec& modified) {

@@ -1,6 +1,7 @@
 #include "shim/streams.h"
 
 #include <errno.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <signal.h>
 #include <string.h>
@@ -10,6 +11,7 @@
 #include <unistd.h>
 
 #include "shim/local.h"
+#include "shim/netlink.h"
 #include "shim/sockets.h"
 
 namespace simbench::shim {
@@ -28,8 +30,8 @@ bool waits(int fd, short events, int flags) {
 
 // One piece, as far as it was taken; -1 with errno if nothing was.
 ssize_t send_piece(int fd, const unsigned char* data, std::size_t size, int flags) {
-  constexpr std::size_t kMost = kMostData - sizeof(Address);
-  const Address nobody{};
+  constexpr std::size_t kMost = kMostData - sizeof(Departure);
+  const Departure nobody{};
   std::size_t sent = 0;
   while (sent < size) {
     const std::size_t part = size - sent < kMost ? size - sent : kMost;
@@ -78,7 +80,8 @@ int stream_accept(int fd, sockaddr* name, socklen_t* size, int flags) {
         open_descriptor(Kind::kStream, (flags & SOCK_NONBLOCK) != 0, (flags & SOCK_CLOEXEC) != 0);
     if (accepted < 0) return -1;
     if (ask_for({.call = Call::kAccept, .fd = fd, .a = number_of(accepted)}, peer) >= 0) {
-      state_of(accepted) = {.type = SOCK_STREAM};
+      state_of(accepted) = {.family = peer.family, .type = SOCK_STREAM, .protocol = IPPROTO_TCP};
+      forget_options(accepted);
       write_address(peer, name, size);
       return accepted;
     }
@@ -106,6 +109,7 @@ ssize_t stream_send(int fd, const msghdr& message, int flags) {
 
 ssize_t stream_receive(int fd, msghdr& message, int flags) {
   const bool wants_all = (flags & MSG_WAITALL) != 0;
+  message.msg_namelen = 0;  // the peer is known
   ssize_t received = 0;
   for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
     const iovec& piece = message.msg_iov[i];
@@ -126,8 +130,11 @@ ssize_t stream_receive(int fd, msghdr& message, int flags) {
 }
 
 SIMBENCH_CALL int listen(int fd, int backlog) {
-  if (is_stream(fd) || is_socket(fd)) {
-    return static_cast<int>(ask({.call = Call::kListen, .fd = fd, .a = backlog}));
+  if (is_netlink(fd)) return refuse(EOPNOTSUPP);
+  if (is_of_network(fd)) {
+    const int result = static_cast<int>(ask({.call = Call::kListen, .fd = fd, .a = backlog}));
+    if (result == 0) state_of(fd).listens = true;
+    return result;
   }
   return SIMBENCH_REAL(listen)(fd, backlog);
 }
@@ -135,7 +142,7 @@ SIMBENCH_CALL int listen(int fd, int backlog) {
 SIMBENCH_CALL int accept4(int fd, sockaddr* name, socklen_t* size, int flags) {
   if (is_stream(fd)) return stream_accept(fd, name, size, flags);
   if (is_local(fd)) return local_accept(fd, name, size, flags);
-  if (is_socket(fd)) return refuse(EOPNOTSUPP);
+  if (is_socket(fd) || is_netlink(fd)) return refuse(EOPNOTSUPP);
   return SIMBENCH_REAL(accept4)(fd, name, size, flags);
 }
 
@@ -144,7 +151,8 @@ SIMBENCH_CALL int accept(int fd, sockaddr* name, socklen_t* size) {
 }
 
 SIMBENCH_CALL int shutdown(int fd, int how) {
-  if (is_stream(fd) || is_socket(fd)) {
+  if (is_netlink(fd)) return refuse(EOPNOTSUPP);
+  if (is_of_network(fd)) {
     return static_cast<int>(ask({.call = Call::kShutDown, .fd = fd, .a = how}));
   }
   const int result = SIMBENCH_REAL(shutdown)(fd, how);

@@ -1,13 +1,14 @@
 // Connections of the simulated network (SOCK_STREAM).
 //
 //   const int fd = 5;
-//   const Address server{.host = 0x0A000001, .port = 80, .reserved = 0};
+//   const Address server = ipv4_address(0x0A000001, 80);
 //   if (is_stream(fd)) stream_connect(fd, server);
 #pragma once
 
 #include <sys/socket.h>
 #include <sys/types.h>
 
+#include "shim/addresses.h"
 #include "shim/link.h"
 
 namespace simbench::shim {

@@ -5,6 +5,7 @@
 #include <sys/timerfd.h>
 #include <time.h>
 
+#include "shim/descriptor_errors.h"
 #include "shim/link.h"
 #include "shim/own_clock.h"
 
@@ -77,6 +78,7 @@ SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
     return SIMBENCH_REAL(timerfd_settime)(fd, flags & TFD_TIMER_ABSTIME, &machine, before);
   }
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_settime)(fd, flags, setting, before);
+  if (kind_of(fd) != Kind::kTimer) return refuse_descriptor(fd, EINVAL);
   const bool is_absolute = (flags & TFD_TIMER_ABSTIME) != 0;
   return set_world_timer({.call = Call::kSetTimer, .fd = fd, .a = is_absolute ? 1 : 0}, *setting,
                          before);
@@ -84,6 +86,7 @@ SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
 
 SIMBENCH_CALL int timerfd_gettime(int fd, itimerspec* setting) {
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_gettime)(fd, setting);
+  if (kind_of(fd) != Kind::kTimer) return refuse_descriptor(fd, EINVAL);
   return query_world_timer({.call = Call::kQueryTimer, .fd = fd}, *setting);
 }
 

@@ -18,6 +18,7 @@
 
 #include <initializer_list>
 
+#include "shim/descriptor_errors.h"
 #include "shim/link.h"
 #include "shim/own_clock.h"
 #include "shim/refused_calls.h"

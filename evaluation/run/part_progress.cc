@@ -9,7 +9,7 @@ namespace simbench::evaluation {
 std::vector<std::size_t> programs_first(const std::vector<bool>& of_programs) {
   std::vector<std::size_t> order(of_programs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_partition(order, [&](std::size_t i) { return of_programs[i]; });
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return of_programs[i]; });
   return order;
 }
 

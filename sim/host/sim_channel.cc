@@ -42,14 +42,14 @@ Nanoseconds SimChannel::occupancy(MessageId id) const {
   return from_ms(send_cost_ms_ + draw.exponential(world.hosts.send_cost_exponential_ms));
 }
 
-Task<MessageId> SimChannel::send(Bytes message) {
+Task<MessageId> SimChannel::send(Bytes message, std::optional<double> bytes_on_wire) {
   const MessageId id = next_id_++;
   const Nanoseconds stack = host_.stack().transmit(host_.true_now(), key_of_sent(id));
   const Cpu::Turn turn = host_.cpu().reserve(occupancy(id) + stack);
   if (turn.end > host_.true_now()) {
     co_await sleep_until(host_.world().context, turn.end, "send");
   }
-  host_.world().network.send(path_, id, std::move(message));
+  host_.world().network.send(path_, id, std::move(message), bytes_on_wire);
   co_return id;
 }
 
@@ -120,7 +120,8 @@ MessageKey SimMulticast::key_of_sent(MessageId id) const {
   return {.direction = direction_of(host_.id(), Groups::kEveryone), .message = id};
 }
 
-Task<MessageId> SimMulticast::send(std::uint32_t group, Bytes message) {
+Task<MessageId> SimMulticast::send(Groups::Id group, Bytes message,
+                                   std::optional<double> bytes_on_wire) {
   const MessageId id = next_id_++;
   const HostWorld& world = host_.world();
   std::vector<SimNetwork::Recipient> recipients;
@@ -137,7 +138,8 @@ Task<MessageId> SimMulticast::send(std::uint32_t group, Bytes message) {
   if (turn.end > host_.true_now()) {
     co_await sleep_until(world.context, turn.end, "send to a group");
   }
-  world.network.send_to_group(host_.id(), id, std::move(recipients), std::move(message), *this);
+  world.network.send_to_group(host_.id(), id, std::move(recipients), std::move(message), *this,
+                              bytes_on_wire);
   co_return id;
 }
 

@@ -34,6 +34,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "algorithms/ports/host.h"
 #include "sim/engine/virtual_executor.h"
@@ -48,7 +49,9 @@ class SimChannel final : public MessageChannel, private Departures {
   // `host` must outlive the channel and the channel its network's events.
   SimChannel(SimHost& host, PeerId peer, Transport transport);
 
-  Task<MessageId> send(Bytes message) override;
+  Task<MessageId> send(Bytes message) override { return send(std::move(message), std::nullopt); }
+  // The network counts so many bytes of it, or what it has.
+  Task<MessageId> send(Bytes message, std::optional<double> bytes_on_wire);
   Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) override;
   Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) override {
     return stamp(id, deadline);
@@ -92,7 +95,8 @@ class SimMulticast final : public Departures {
  public:
   explicit SimMulticast(SimHost& host) : Departures(host, "groups") {}
 
-  Task<MessageId> send(std::uint32_t group, Bytes message);
+  Task<MessageId> send(Groups::Id group, Bytes message,
+                       std::optional<double> bytes_on_wire = std::nullopt);
 
  private:
   void on_arrival() override {}

@@ -80,14 +80,16 @@ PathId SimNetwork::open(PeerId from, PeerId to, Transport transport, Endpoint& e
   return path;
 }
 
-void SimNetwork::send(PathId path_id, MessageId id, Bytes message) {
+void SimNetwork::send(PathId path_id, MessageId id, Bytes message,
+                      std::optional<double> bytes_on_wire) {
   Path& path = paths_[path_id];
   if (path.nagle) {
     std::optional<Segment> segment = path.nagle->add(path_id, id, std::move(message));
     if (segment) send_segment(*std::move(segment));
     return;
   }
-  Segment segment{.path = path_id, .first = id, .bytes = static_cast<double>(message.size())};
+  const auto size = static_cast<double>(message.size());
+  Segment segment{.path = path_id, .first = id, .bytes = bytes_on_wire.value_or(size)};
   segment.messages.push_back(std::move(message));
   send_segment(std::move(segment));
 }
@@ -149,8 +151,10 @@ void SimNetwork::drop(SegmentId id) {
 }
 
 void SimNetwork::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
-                               Bytes message, Endpoint& sender) {
-  Segment segment{.first = id, .bytes = static_cast<double>(message.size())};
+                               Bytes message, Endpoint& sender,
+                               std::optional<double> bytes_on_wire) {
+  const auto size = static_cast<double>(message.size());
+  Segment segment{.first = id, .bytes = bytes_on_wire.value_or(size)};
   if (catch_up_) catch_up_();
   const bool wireless = is_wireless(from, recipients);
   const HostDeparture departure =
@@ -479,17 +483,19 @@ void SimNetwork::report(const Segment& segment, std::optional<TrueTime> arrival)
   if (catch_up_) catch_up_();
   const Path& path = paths_[segment.path];
   MessageId id = segment.first;
+  const bool is_stream = path.transport == Transport::kStream;
   for (const Bytes& message : segment.messages) {
-    observer_->on_message({.from = path.from,
-                           .to = path.to,
-                           .stream = path.transport == Transport::kStream,
-                           .id = id++,
-                           .bytes = message.size(),
-                           .left = segment.left,
-                           .at_switch = segment.at_switch,
-                           .arrived = arrival.value_or(TrueTime{}),
-                           .lost = !arrival,
-                           .copy = !segment.is_counted});
+    observer_->on_message(
+        {.from = path.from,
+         .to = path.to,
+         .stream = is_stream,
+         .id = id++,
+         .bytes = is_stream ? message.size() : static_cast<std::size_t>(segment.bytes),
+         .left = segment.left,
+         .at_switch = segment.at_switch,
+         .arrived = arrival.value_or(TrueTime{}),
+         .lost = !arrival,
+         .copy = !segment.is_counted});
   }
 }
 

@@ -36,6 +36,10 @@
 // message waits in its host's own queue and at each switch port for what is there. Where a buffer
 // overflows it may be lost, a datagram for good, a segment of a stream until its timeout.
 //
+// A message costs the wire its bytes and /network/overhead_bytes, which stand for the heads of
+// Ethernet, IP and TCP or UDP and what the line needs between frames. Datagrams of programs state
+// what they cost, by their heads (sim/programs/packet.h).
+//
 // Capture traffic: the frames that a host sends on pass its port like messages, in the order of
 // their delivery and each in one piece, towards a storage whose own port is not modelled. Messages
 // of the host wait behind it; those to the host do not. A frame that finds more than a second of
@@ -118,8 +122,10 @@ class SimNetwork : private EventHandler {
   // before the receiver has opened its end wait in the inbox.
   PathId open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint);
 
-  // Message `id` leaves the host now; ids count from 0 on each path.
-  void send(PathId path, MessageId id, Bytes message);
+  // Message `id` leaves the host now; ids count from 0 on each path. `bytes_on_wire` is what ports
+  // and the air count of a datagram beside overhead_bytes, where that is not its size.
+  void send(PathId path, MessageId id, Bytes message,
+            std::optional<double> bytes_on_wire = std::nullopt);
 
   // Where a copy of a message to a group goes, and its number there.
   struct Recipient {
@@ -129,7 +135,7 @@ class SimNetwork : private EventHandler {
   // Message `id` to a group leaves host `from` now, towards these; `sender` is notified of it
   // alone.
   void send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients, Bytes message,
-                     Endpoint& sender);
+                     Endpoint& sender, std::optional<double> bytes_on_wire = std::nullopt);
   Groups& groups() { return groups_; }
 
   // Notifies `observer`, which must outlive the network's events, of every message when its arrival

@@ -24,7 +24,7 @@ constexpr std::byte kLastEventType{3};
 constexpr std::byte kVersion{2};
 constexpr std::size_t kEventMessageBytes = 44;
 constexpr std::size_t kLengthBegin = 2;
-constexpr std::size_t kMostTrailer = 8;
+constexpr std::size_t kMostTrailer = 80;
 constexpr std::size_t kCorrectionBegin = 8;
 constexpr std::size_t kCorrectionEnd = 16;
 constexpr double kUnitsPerNs = 65536;

@@ -19,8 +19,9 @@
 //
 // Event messages are recognised by their layout (IEEE 1588-2019, clause 13.3): in a datagram, the
 // low nibble of byte 0 (messageType) is at most 3, that of byte 1 (versionPTP) is 2, and bytes 2
-// and 3 (messageLength) state 44 bytes or more and the datagram's length but for at most 8 bytes
-// that follow the message; bytes 8 to 15 are the correctionField, big-endian, in units of 2^-16 ns.
+// and 3 (messageLength) state 44 bytes or more and the datagram's length but for at most 80 bytes
+// that follow the message (padding, and what a program's packet says of itself:
+// sim/programs/packet.h); bytes 8 to 15 are the correctionField, big-endian, in units of 2^-16 ns.
 //
 // Source: IEEE 1588-2019; linuxptp's default configuration (pi_proportional_const and
 // pi_integral_const: 0.7 and 0.3 at an interval of 1 s).

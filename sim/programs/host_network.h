@@ -1,40 +1,47 @@
-// UDP on the simulated network, as the programs of one host have it.
+// UDP on the simulated network, as the programs of one host have it, by IPv4 and IPv6.
 //
-// Host i has the address 10.0.0.1 + i in 10.0.0.0/16; a network has at most 65000 hosts. A datagram
-// goes over the port's channel to its host (algorithms/ports/host.h), one to a group or to all as
-// one message (sim/host/sim_channel.h), with its destination and its ports behind the payload:
-// eight bytes on the wire beside the headers that the network counts anyway.
+// A datagram goes over the host's channel to its receiver, one to a group or to all as one message,
+// in fragments if it is large (sim/programs/packet.h has what each costs the wire). Where it goes
+// and from which address is the routing table's matter (sim/programs/routes.h).
 //
 //  - Unicast: to the socket that is bound to the port, unless that is connected to another; of
 //    several that share the port, to the one that states most of the addresses, and of equals to
 //    the one bound last. Datagrams to the host itself arrive at once.
-//  - Multicast, 224.0.0.0/4: to each socket that is bound to the port on the members' hosts and has
-//    joined the group, or takes what any socket of its host has joined (IP_MULTICAST_ALL). Any
-//    time to live reaches all of the network.
+//  - Groups, 224.0.0.0/4 and ff00::/8: to each socket that is bound to the port on the members'
+//    hosts and has joined the group, or takes what any socket of its host has joined
+//    (IP_MULTICAST_ALL). All hosts are in 224.0.0.1 and ff02::1. Any number of hops but 0 reaches
+//    all of the network.
 //  - Broadcast, 255.255.255.255 and 10.0.255.255: to each socket that is bound to the port, on all
-//    other hosts. Needs SO_BROADCAST.
-// What nobody waits for is dropped, and so is what comes when a socket holds kMostQueued.
+//    hosts. Needs SO_BROADCAST.
+// What comes when a socket holds UdpSocket::kMostQueued is dropped. A datagram to one host for
+// which there is no socket is answered by ICMP, which comes to its sender as any packet does; a
+// host sends six such answers to another at once, and then one a second (IPv6: four). Within a host
+// the answer comes at once.
+//
+// A socket of IPv6 takes IPv4 too unless it says IPV6_V6ONLY; addresses are mapped then.
 //
 // pump(peer) is the receiving half, a coroutine for each peer: wake-ups cost what the scenario says
-// and stamps are taken where it says, as for any algorithm. stamp_departures() puts hardware stamps
-// into error queues as messages pass the card.
+// and stamps are taken where it says, as for any algorithm. run() stamps what leaves and answers,
+// each at the cost of a send call.
 //
-// Source: ip(7), udp(7), socket(7); Linux' Documentation/networking/timestamping.
+// Not simulated: neighbour discovery and the reports of members, which take no time; distributing
+// what comes among sockets (SO_REUSEPORT); corked sends (MSG_MORE); options of IP heads.
+//
+// Source: ip(7), ipv6(7), udp(7), socket(7); Linux' Documentation/networking/timestamping; Linux,
+// net/ipv4/udp.c, icmp.c and their kin of IPv6.
 //
 //   HostNetwork network(host, 6);
 //   UdpSocket own;
-//   network.bind(own, {.host = 0, .port = 123});
-//   const int error = co_await network.send(own, {.host = processes::address_of(0), .port = 123},
-//                                           Bytes(48), own.departure_stamps);
+//   network.bind(own, shim::ipv4_address(0, 123));
+//   const shim::Departure departure{.to = shim::ipv4_address(0x0A000001, 123)};
+//   const int error = co_await network.send(own, departure, Bytes(48), own.departure_stamps);
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "algorithms/ports/host.h"
@@ -42,104 +49,101 @@
 #include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/host_frames.h"
 #include "sim/programs/host_streams.h"
+#include "sim/programs/packet.h"
+#include "sim/programs/packet_sender.h"
+#include "sim/programs/routes.h"
+#include "sim/programs/udp_socket.h"
 
 namespace simbench::sim {
 
-struct QueuedDatagram {
-  shim::Arrival arrival;
-  Bytes payload;
-};
-
-// What the card stamps.
-struct CardStamping {
-  bool arrivals = false;
-  bool departures = false;
-};
-
-struct UdpSocket {
-  shim::Address local{};  // port 0: not bound
-  std::optional<shim::Address> peer{};
-  unsigned arrival_stamps = 0;    // shim::StampKind, as bits
-  unsigned departure_stamps = 0;  // likewise
-  bool shares_port = false;       // SO_REUSEADDR
-  bool may_broadcast = false;
-  bool has_urgent_errors = false;  // SO_SELECT_ERR_QUEUE
-  bool takes_all_groups = true;    // IP_MULTICAST_ALL
-  bool hears_itself = true;        // IP_MULTICAST_LOOP
-  std::set<std::uint32_t> groups{};
-  std::uint32_t sent = 0;                 // the number of the next datagram
-  std::deque<QueuedDatagram> arrived{};   // not received by the program yet
-  std::deque<QueuedDatagram> departed{};  // the error queue: what has left, with its stamp
-  std::function<void()> on_arrival{};
-  std::uint64_t number = 0;  // since it was bound
-};
-
 class HostNetwork {
  public:
-  static constexpr std::size_t kMostQueued = 256;
-  static constexpr std::size_t kMostGroups = 20;     // of a socket
-  static constexpr std::size_t kMostPayload = 1472;  // one frame; fragments are not simulated
+  static constexpr std::size_t kMostGroups = 20;  // of a socket
 
   // The host must outlive this.
   HostNetwork(SimHost& host, std::size_t hosts);
 
   std::size_t hosts() const { return hosts_; }
-  std::uint32_t address() const { return processes::address_of(host_.id()); }
+  std::uint32_t address() const { return routes_.ipv4(); }
 
-  // These return an errno, or 0. A bound socket must be closed before it ends.
+  // These are of all sockets of datagrams, packet sockets among them, and return an errno, or 0.
+  // `connect` to no family ends an association. A socket that was opened must be closed before it
+  // ends.
+  void open(UdpSocket& socket);
   int bind(UdpSocket& socket, shim::Address address);
   int connect(UdpSocket& socket, shim::Address peer);
-  int join(UdpSocket& socket, std::uint32_t group);
-  int leave(UdpSocket& socket, std::uint32_t group);
+  int shut_down(UdpSocket& socket, int how);
+  // The scope of a group is its interface; `kind` is of packet sockets: PACKET_MR_...
+  int join(UdpSocket& socket, bool joins, int kind, shim::Address group);
   // `stamps` are those of this departure: shim::StampKind as bits.
-  Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload, unsigned stamps);
+  Task<int> send(UdpSocket& socket, shim::Departure departure, Bytes payload, unsigned stamps);
   void close(UdpSocket& socket);
 
-  // What the card stamps (SIOCSHWTSTAMP), for all sockets of the host; nothing at first.
-  CardStamping card_stamping() const { return card_stamping_; }
-  void set_card_stamping(CardStamping stamping) { card_stamping_ = stamping; }
+  const Cables& cables() const { return frames_.cables(); }
+  CardStamping card_stamping() const { return sender_.card_stamping(); }
+  void set_card_stamping(CardStamping stamping) { sender_.set_card_stamping(stamping); }
 
   HostStreams& streams() { return streams_; }
 
   // Receives from a peer, for ever.
   Task<void> pump(PeerId peer);
-  // Stamps what leaves, for ever.
-  Task<void> stamp_departures();
+  // Stamps what leaves, and answers what nobody takes, for ever.
+  Task<void> stamp_departures() { return sender_.stamp_departures(); }
+  Task<void> answer_refused();
 
  private:
-  // A message on its way to the card.
-  struct Leaving {
-    std::uint64_t socket = 0;
-    std::optional<PeerId> peer{};  // nothing: a group
-    unsigned stamps = 0;           // shim::StampKind as bits
-    MessageId message = 0;
-    QueuedDatagram datagram{};
+  // How many answers a peer may have: a bucket that fills with time.
+  struct Allowance {
+    double answers = 6;
+    SteadyTime since{};
+  };
+  struct Membership {
+    shim::Address group{};
+    int sockets = 0;
   };
 
-  bool is_taken(shim::Address address, const UdpSocket& by) const;
+  bool is_taken(const shim::Address& address, const UdpSocket& by) const;
   // To a free port if the address has none.
   int bind_to(UdpSocket& socket, shim::Address address);
-  // The group that a message to this address is for, if it is for several hosts.
-  static std::optional<std::uint32_t> group_of(std::uint32_t address);
-  Task<void> send_to_peer(UdpSocket& socket, Leaving leaving);
-  Task<void> send_to_group(UdpSocket& socket, std::uint32_t group, Leaving leaving);
-  // The message has left, with this stamp by software.
-  void keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving);
-  static void queue_departure(UdpSocket& socket, QueuedDatagram datagram);
-  void deliver(const QueuedDatagram& datagram);
+  void dissolve(UdpSocket& socket);
+  Route route_of(const UdpSocket& socket, const shim::Departure& departure, bool is_connect) const;
+  int check_size(UdpSocket& socket, const shim::Departure& departure, const Route& route,
+                 std::size_t size) const;
+  static WirePacket packet_for(const UdpSocket& socket, const shim::Departure& departure,
+                               const Route& route, Bytes payload);
+  bool stays_on_host(const PacketHead& head, bool loops) const;
+  Task<void> transmit(UdpSocket& socket, const Route& route, WirePacket packet, unsigned stamps);
+
+  int joined(const shim::Address& group) const;
+  void count_member(const shim::Address& group, int change);
+  int join_group(UdpSocket& socket, shim::Address group);
+  int leave_group(UdpSocket& socket, const shim::Address& group);
+
+  static QueuedDatagram arrived(const WirePacket& packet, std::uint32_t interface);
+  UdpSocket* socket_for(const shim::Arrival& arrival) const;
+  // A datagram to one host; false if nobody takes it.
+  bool deliver(const QueuedDatagram& datagram);
   void deliver_to_all(const QueuedDatagram& datagram);
-  static void queue_arrival(UdpSocket& socket, QueuedDatagram datagram);
+  void take(PeerId peer, WirePacket packet);
+  // That a datagram of this host was refused.
+  void take_refusal(const shim::Address& from, const shim::Address& to, Bytes quoted);
+  bool may_answer(PeerId peer, bool is_ipv4);
 
   SimHost& host_;
   std::size_t hosts_;
+  Routes routes_;
+  PacketSender sender_;
+  HostFrames frames_;
   std::vector<UdpSocket*> bound_;
-  std::uint64_t sockets_bound_ = 0;
-  std::map<std::uint32_t, int> joined_;  // how many sockets, by group
+  std::vector<Membership> members_;
   FreePorts ports_;
-  CardStamping card_stamping_{};
-  std::deque<Leaving> leaving_;
-  WaitPoint has_left_;
+  std::uint32_t datagrams_ = 0;  // that were sent in fragments
+  Reassembly reassembly_;
+  std::map<std::pair<PeerId, bool>, Allowance> allowances_;
+  std::deque<WirePacket> refusals_;  // to be sent
+  WaitPoint has_refused_;
   HostStreams streams_;
 };
 

@@ -34,16 +34,6 @@ void OpenObject::watch(const std::weak_ptr<OpenObject>& set) {
   if (!std::ranges::any_of(watchers_, is_same)) watchers_.push_back(set);
 }
 
-namespace {
-
-int readiness_of(const UdpSocket& socket) {
-  const int error = socket.departed.empty() ? 0 : POLLERR;
-  const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
-  return (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent | error;
-}
-
-}  // namespace
-
 int readiness(OpenObject& object) {
   if (const UdpSocket* socket = object.socket()) return readiness_of(*socket);
   if (const StreamSocket* stream = object.stream()) return HostStreams::readiness(*stream);

@@ -124,6 +124,8 @@ Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest reques
     case Call::kAccept:
     case Call::kShutDown:
     case Call::kJoin:
+    case Call::kFilterArrivals:
+    case Call::kCountArrivals:
       co_return of_socket(request);
     case Call::kSetTimer:
     case Call::kQueryTimer:
@@ -158,7 +160,7 @@ Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest reques
     case Call::kLookAtFile:
       co_return look_at_file(request);
     case Call::kOpenSocket:
-      co_return open_socket(request.head.fd, request.head.a);
+      co_return open_socket(request);
     case Call::kOpenTimer:
       co_return open_timer(request.head.fd, request.head.a);
     case Call::kClose:
@@ -182,7 +184,9 @@ shim::Identity Process::identity(const ProgramThread& thread) const {
               around_.host.nic() != nullptr
                   ? static_cast<std::int32_t>(std::lround(around_.host.nic()->max_frequency_ppb()))
                   : 0,
-          .has_pulse_line = around_.pulses.has_line() ? 1U : 0U};
+          .has_pulse_line = around_.pulses.has_line() ? 1U : 0U,
+          .cards = around_.network.cables().cards(),
+          .carriers = around_.network.cables().carriers()};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {

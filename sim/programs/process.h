@@ -140,21 +140,21 @@ class Process {
   std::shared_ptr<OpenObject> open(int fd, OpenObject::What what);
   Task<Answer> close(int fd);
   UdpSocket& socket_of(int fd);
-  Answer open_socket(int fd, std::int64_t type);
+  Answer open_socket(const ChildRequest& request);
   Answer of_socket(const ChildRequest& request);
   Task<Answer> read_card(std::int64_t count);
   Answer card_stamping(std::int64_t wanted);
-  int join(UdpSocket& socket, bool joins, std::int64_t group);
-  static Answer set_option(UdpSocket& socket, shim::SocketOption option, std::int64_t value);
+  static int set_filter(UdpSocket& socket, const Bytes& data);
   static Answer receive(UdpSocket& socket, std::int64_t how);
   Task<Answer> send(ChildRequest request);
 
   bool is_of_stream(const ChildRequest& request) const;
-  Answer open_stream(int fd);
+  Answer open_stream(int fd, int family);
   Task<Answer> of_stream(ChildRequest request);
   Answer accept(StreamSocket& listener, std::int64_t fd);
   Task<Answer> write(StreamSocket& stream, const Bytes& data);
   Task<Answer> read(StreamSocket& stream, std::int64_t how, std::int64_t most);
+  static int set_stream_option(StreamSocket& stream, std::int64_t option, std::int64_t value);
   static Answer describe(StreamSocket& stream, shim::Call call);
   std::shared_ptr<OpenObject> add_stream(int fd, std::shared_ptr<StreamSocket> stream);
 

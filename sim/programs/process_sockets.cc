@@ -37,14 +37,26 @@ UdpSocket& Process::socket_of(int fd) {
   return *object->socket();
 }
 
-Process::Answer Process::open_socket(int fd, std::int64_t type) {
+Process::Answer Process::open_socket(const ChildRequest& request) {
   if (open_.size() >= kMostOpen) return {.error = EMFILE};
-  if (type == SOCK_STREAM) return open_stream(fd);
-  const std::shared_ptr<OpenObject> object = open(fd, UdpSocket{});
-  object->socket()->on_arrival = [wake = around_.wake, object = object.get()] {
+  const int fd = request.head.fd;
+  const auto family = static_cast<int>(request.head.b & 0xFFFF);
+  if (family != AF_INET && family != AF_INET6 && family != AF_PACKET) {
+    return {.error = EAFNOSUPPORT};
+  }
+  if (request.head.a == SOCK_STREAM && family == AF_PACKET) return {.error = ESOCKTNOSUPPORT};
+  if (request.head.a == SOCK_STREAM) return open_stream(fd, family);
+  const std::shared_ptr<OpenObject> object = open(fd, UdpSocket{.family = family});
+  UdpSocket& socket = *object->socket();
+  if (family == AF_PACKET) {
+    socket.packet = PacketPart{.has_link_heads = request.head.a == SOCK_RAW,
+                               .protocol = static_cast<std::uint16_t>(request.head.b >> 16)};
+  }
+  socket.on_arrival = [wake = around_.wake, object = object.get()] {
     object->changed(POLLIN | POLLERR | POLLPRI);
     wake();
   };
+  around_.network.open(socket);
   return {};
 }
 
@@ -92,7 +104,7 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
     case Call::kName:
       return {.data = bytes_of(socket.local)};
     case Call::kPeerName:
-      if (!socket.peer) return {.error = ENOTCONN};
+      if (!socket.peer) return {.error = socket.packet ? EOPNOTSUPP : ENOTCONN};
       return {.data = bytes_of(*socket.peer)};
     case Call::kReceive:
       return receive(socket, request.head.a);
@@ -100,71 +112,57 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
     case Call::kAccept:
       return {.error = EOPNOTSUPP};
     case Call::kShutDown:
-      return {.error = socket.peer ? 0 : ENOTCONN};
+      return {.error = around_.network.shut_down(socket, static_cast<int>(request.head.a))};
     case Call::kSocketError:
-      return {};
+      return {.value = take_error(socket)};
     case Call::kCountInput:
       return {.value = socket.arrived.empty()
                            ? 0
                            : static_cast<std::int64_t>(socket.arrived.front().payload.size())};
     case Call::kJoin:
-      return {.error = join(socket, request.head.a != 0, request.head.b)};
+      return {.error = around_.network.join(socket, request.head.a != 0,
+                                            static_cast<int>(request.head.b),
+                                            read_head<shim::Address>(request.data))};
+    case Call::kFilterArrivals:
+      return {.error = set_filter(socket, request.data)};
+    case Call::kCountArrivals:
+      if (!socket.packet) return {.error = ENOPROTOOPT};
+      return {.data = bytes_of(std::exchange(socket.packet->counted, {}))};
     default:
-      return set_option(socket, static_cast<shim::SocketOption>(request.head.a), request.head.b);
+      return {.value = socket.sent,
+              .error = set_socket_option(socket, request.head.a, request.head.b)};
   }
 }
 
-int Process::join(UdpSocket& socket, bool joins, std::int64_t group) {
-  const auto address = static_cast<std::uint32_t>(group);
-  return joins ? around_.network.join(socket, address) : around_.network.leave(socket, address);
-}
-
-Process::Answer Process::set_option(UdpSocket& socket, shim::SocketOption option,
-                                    std::int64_t value) {
-  const bool is_on = value != 0;
-  switch (option) {
-    case shim::SocketOption::kReceiveStamps:
-      socket.arrival_stamps = static_cast<unsigned>(value);
-      return {};
-    case shim::SocketOption::kTransmitStamps:
-      socket.departure_stamps = static_cast<unsigned>(value);
-      return {.value = socket.sent};
-    case shim::SocketOption::kReuseAddress:
-      socket.shares_port = is_on;
-      return {};
-    case shim::SocketOption::kBroadcast:
-      socket.may_broadcast = is_on;
-      return {};
-    case shim::SocketOption::kUrgentErrors:
-      socket.has_urgent_errors = is_on;
-      return {};
-    case shim::SocketOption::kAllGroups:
-      socket.takes_all_groups = is_on;
-      return {};
-    case shim::SocketOption::kLoopGroups:
-      socket.hears_itself = is_on;
-      return {};
+int Process::set_filter(UdpSocket& socket, const Bytes& data) {
+  std::vector<sock_filter> code(data.size() / sizeof(sock_filter));
+  if (code.empty()) {
+    if (!socket.filter.is_set()) return ENOENT;
+    socket.filter = {};
+    return 0;
   }
-  return {.error = ENOPROTOOPT};
+  std::memcpy(code.data(), data.data(), code.size() * sizeof code[0]);
+  const int error = PacketFilter::check(code);
+  if (error == 0) socket.filter = PacketFilter(std::move(code));
+  return error;
 }
 
 Process::Answer Process::receive(UdpSocket& socket, std::int64_t how) {
-  std::deque<QueuedDatagram>& queue = (how & 1) != 0 ? socket.departed : socket.arrived;
-  if (queue.empty()) return {.error = EAGAIN};
-  Answer answer{.data = bytes_of(queue.front().arrival)};
-  const Bytes& payload = queue.front().payload;
+  const TakenDatagram taken = take_datagram(socket, how);
+  if (taken.error != 0) return {.error = taken.error};
+  Answer answer{.data = bytes_of(taken.datagram.arrival)};
+  const Bytes& payload = taken.datagram.payload;
   answer.data.insert(answer.data.end(), payload.begin(), payload.end());
-  if ((how & 2) == 0) queue.pop_front();
   return answer;
 }
 
 Task<Process::Answer> Process::send(ChildRequest request) {
   UdpSocket& socket = socket_of(request.head.fd);
-  const auto to = read_head<shim::Address>(request.data);
-  Bytes payload(request.data.begin() + sizeof to, request.data.end());
+  const auto departure = read_head<shim::Departure>(request.data);
+  Bytes payload(request.data.begin() + sizeof departure, request.data.end());
   const std::int64_t asked = request.head.a;
   const unsigned stamps = asked < 0 ? socket.departure_stamps : static_cast<unsigned>(asked);
-  const int error = co_await around_.network.send(socket, to, std::move(payload), stamps);
+  const int error = co_await around_.network.send(socket, departure, std::move(payload), stamps);
   co_return Answer{.error = error};
 }
 

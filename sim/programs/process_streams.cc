@@ -28,8 +28,8 @@ std::shared_ptr<OpenObject> Process::add_stream(int fd, std::shared_ptr<StreamSo
   return object;
 }
 
-Process::Answer Process::open_stream(int fd) {
-  add_stream(fd, around_.network.streams().open([] {}));
+Process::Answer Process::open_stream(int fd, int family) {
+  add_stream(fd, around_.network.streams().open(family, [] {}));
   return {};
 }
 
@@ -47,10 +47,10 @@ Process::Answer Process::accept(StreamSocket& listener, std::int64_t fd) {
 }
 
 Task<Process::Answer> Process::write(StreamSocket& stream, const Bytes& data) {
-  read_head<shim::Address>(data);  // a stream has its peer
+  read_head<shim::Departure>(data);  // a stream has its peer
   std::size_t written = 0;
   const int error = co_await around_.network.streams().write(
-      stream, std::span(data).subspan(sizeof(shim::Address)), written);
+      stream, std::span(data).subspan(sizeof(shim::Departure)), written);
   co_return Answer{.value = static_cast<std::int64_t>(written), .error = error};
 }
 
@@ -87,11 +87,29 @@ Task<Process::Answer> Process::of_stream(ChildRequest request) {
       co_return co_await write(*stream, request.data);
     case Call::kReceive:
       co_return co_await read(*stream, request.head.a, request.head.b);
+    case Call::kSetOption:
+      answer.error = set_stream_option(*stream, request.head.a, request.head.b);
+      co_return answer;
     case Call::kShutDown:
       answer.error = co_await network.shut_down(*stream, static_cast<int>(request.head.a));
       co_return answer;
     default:
       co_return describe(*stream, request.head.call);
+  }
+}
+
+int Process::set_stream_option(StreamSocket& stream, std::int64_t option, std::int64_t value) {
+  switch (static_cast<shim::SocketOption>(option & ~shim::kOfIpv6)) {
+    case shim::SocketOption::kOnlyIpv6:
+      // Not once it has a port (do_ipv6_setsockopt()).
+      if (stream.local.port != 0) return EINVAL;
+      stream.only_ipv6 = value != 0;
+      return 0;
+    case shim::SocketOption::kInterface:
+      stream.interface = static_cast<std::uint32_t>(value);
+      return 0;
+    default:
+      return ENOPROTOOPT;
   }
 }
 

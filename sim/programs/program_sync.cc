@@ -101,6 +101,7 @@ class RunningPrograms {
       tasks.push_back(network_.streams().pump(peer));
     }
     tasks.push_back(network_.stamp_departures());
+    tasks.push_back(network_.answer_refused());
     tasks.push_back(kernel_.run());
     tasks.push_back(pulses_.run());
     for (std::size_t i = 0; i < programs_.size(); ++i) tasks.push_back(serve(i));

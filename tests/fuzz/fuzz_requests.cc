@@ -15,36 +15,45 @@
 
 #include "algorithms/host_sync/join.h"
 #include "scenarios/loader.h"
-#include "sim/programs/process.h"
+#include "sim/programs/program.h"
 #include "tests/sim/host/service_world.h"
 
 namespace {
 
 using simbench::Task;
 using simbench::sim::CardClock;
+using simbench::sim::HostFiles;
 using simbench::sim::HostNetwork;
+using simbench::sim::HostProcesses;
 using simbench::sim::KernelClock;
-using simbench::sim::Process;
+using simbench::sim::Program;
+using simbench::sim::PulseDevices;
 using simbench::sim::ServiceWorld;
 using simbench::sim::SimHost;
 
 constexpr std::size_t kHosts = 2;
 constexpr double kWorldSeconds = 2;
 
-Task<void> serve(Process& process, std::string& note) {
-  co_await process.serve();
-  note = process.ending();
+Task<void> serve(Program& program, std::string& note) {
+  co_await program.serve();
+  note = program.ending();
 }
 
 Task<void> run(SimHost& host, int link, std::string& note) {
   HostNetwork network(host, kHosts);
   KernelClock kernel(host);
   CardClock card(host);
-  Process process(host, network, kernel, card, {.command = {"program"}, .link = link}, 0);
+  PulseDevices pulses(host);
+  HostProcesses processes;
+  HostFiles files(host, "/no/folder");
+  Program program({host, network, kernel, card, pulses, processes, files},
+                  {.command = {"program"}, .link = link});
   std::vector<Task<void>> tasks;
   tasks.push_back(kernel.run());
+  tasks.push_back(pulses.run());
   tasks.push_back(network.stamp_departures());
-  tasks.push_back(serve(process, note));
+  tasks.push_back(network.answer_refused());
+  tasks.push_back(serve(program, note));
   co_await simbench::join_all(std::move(tasks));
 }
 

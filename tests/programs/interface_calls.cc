@@ -109,6 +109,18 @@ void check_lists() {
     found += std::string(each->ifa_name) + "=" + dotted(*each->ifa_addr) + " ";
   }
   expect(cards == 2 && found == "lo=127.0.0.1 eth0=" + own_address + " ", "both, by both families");
+  std::string found6;
+  for (const ifaddrs* each = list; each != nullptr; each = each->ifa_next) {
+    if (each->ifa_addr->sa_family != AF_INET6) continue;
+    const auto& address = reinterpret_cast<const sockaddr_in6&>(*each->ifa_addr);
+    char text[INET6_ADDRSTRLEN];
+    inet_ntop(AF_INET6, &address.sin6_addr, text, sizeof text);
+    found6 += std::string(each->ifa_name) + "=" + text + "%" +
+              std::to_string(address.sin6_scope_id) + " ";
+  }
+  const std::string number = std::to_string(std::stoi(own_address.substr(7)));
+  expect(found6 == "lo=::1%0 eth0=fd00::" + number + "%0 eth0=fe80::aff:fe00:" + number + "%2 ",
+         "by IPv6, the link's own last");
   freeifaddrs(list);
 }
 
@@ -160,29 +172,89 @@ void check_links() {
   expect(socket(AF_NETLINK, SOCK_RAW, NETLINK_GENERIC) == -1, "no other protocol");
 }
 
-// What a name means, or an error's number.
-std::string resolved(const char* node, const char* service, int flags = 0) {
+struct AddressQuestion {
+  nlmsghdr head;
+  ifaddrmsg address;
+};
+
+// How many addresses of a family there are.
+int count_addresses(unsigned char family) {
+  const int fd = socket(AF_NETLINK, SOCK_RAW, NETLINK_ROUTE);
+  AddressQuestion question{};
+  question.head.nlmsg_len = sizeof question;
+  question.head.nlmsg_type = RTM_GETADDR;
+  question.head.nlmsg_flags = NLM_F_REQUEST | NLM_F_DUMP;
+  question.address.ifa_family = family;
+  send(fd, &question, sizeof question, 0);
+  alignas(nlmsghdr) unsigned char bytes[2048];
+  ssize_t left = recv(fd, bytes, sizeof bytes, 0);
+  int addresses = 0;
+  for (auto* head = reinterpret_cast<const nlmsghdr*>(bytes); NLMSG_OK(head, left);
+       head = NLMSG_NEXT(head, left)) {
+    if (head->nlmsg_type == RTM_NEWADDR) ++addresses;
+  }
+  close(fd);
+  return addresses;
+}
+
+void check_addresses() {
+  expect(count_addresses(AF_INET) == 2, "RTM_GETADDR of IPv4");
+  expect(count_addresses(AF_INET6) == 3, "of IPv6");
+  expect(count_addresses(AF_UNSPEC) == 5, "of both");
+}
+
+// What a name means, in the order of the list, or an error's number.
+std::string resolved(const char* node, const char* service, int flags = 0, int family = AF_UNSPEC) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
   hints.ai_flags = flags;
+  hints.ai_family = family;
   addrinfo* list = nullptr;
   const int error = getaddrinfo(node, service, &hints, &list);
   if (error != 0) return std::to_string(error);
-  char host[64];
-  char port[16];
-  expect(list->ai_next == nullptr && list->ai_socktype == SOCK_DGRAM, "as asked for");
-  expect(getnameinfo(list->ai_addr, list->ai_addrlen, host, sizeof host, port, sizeof port,
-                     NI_NUMERICHOST | NI_NUMERICSERV) == 0,
-         "getnameinfo");
+  std::string all;
+  for (const addrinfo* each = list; each != nullptr; each = each->ai_next) {
+    char host[64];
+    char port[16];
+    expect(each->ai_socktype == SOCK_DGRAM && each->ai_protocol == IPPROTO_UDP, "as asked for");
+    expect(getnameinfo(each->ai_addr, each->ai_addrlen, host, sizeof host, port, sizeof port,
+                       NI_NUMERICHOST | NI_NUMERICSERV) == 0,
+           "getnameinfo");
+    all += std::string(all.empty() ? "" : " ") + host + ":" + port;
+  }
   freeaddrinfo(list);
-  return std::string(host) + ":" + port;
+  return all;
+}
+
+// The name of an address, or an error's number.
+std::string name_of(const char* number, int flags = 0) {
+  addrinfo hints{};
+  hints.ai_flags = AI_NUMERICHOST;
+  addrinfo* list = nullptr;
+  if (getaddrinfo(number, nullptr, &hints, &list) != 0) return "no address";
+  char host[64];
+  const int error =
+      getnameinfo(list->ai_addr, list->ai_addrlen, host, sizeof host, nullptr, 0, flags);
+  freeaddrinfo(list);
+  return error == 0 ? host : std::to_string(error);
 }
 
 void check_names(const std::string& number) {
-  expect(resolved("host0", "ntp") == "10.0.0.1:123", "a host of the world");
+  expect(resolved("host0", "ntp") == "fd00::1:123 10.0.0.1:123", "a host, by IPv6 first");
+  expect(resolved("host0", "ntp", 0, AF_INET) == "10.0.0.1:123", "by IPv4 alone");
+  expect(resolved("host0", "ntp", 0, AF_INET6) == "fd00::1:123", "by IPv6 alone");
+  expect(resolved("10.0.0.2", "1", AI_V4MAPPED, AF_INET6) == "::ffff:10.0.0.2:1", "mapped");
+  expect(resolved("10.0.0.2", "1", 0, AF_INET6) == std::to_string(EAI_ADDRFAMILY),
+         "an address of the other family");
+  expect(resolved("fe80::aff:fe00:2%eth0", "1") == "fe80::aff:fe00:2%eth0:1", "with its link");
+  expect(resolved("fe80::aff:fe00:2%2", "1") == "fe80::aff:fe00:2%eth0:1", "by its number");
+  expect(resolved("fe80::aff:fe00:2%eth9", "1") == std::to_string(EAI_NONAME), "no such link");
+  expect(resolved("fd00::2%eth0", "1") == std::to_string(EAI_NONAME), "a link without need");
   expect(resolved("10.0.0.2", "319", AI_NUMERICHOST) == "10.0.0.2:319", "a dotted quad");
-  expect(resolved("localhost", nullptr) == "127.0.0.1:0", "localhost");
-  expect(resolved(nullptr, "7", AI_PASSIVE) == "0.0.0.0:7", "AI_PASSIVE");
+  expect(resolved("localhost", nullptr) == "::1:0 127.0.0.1:0", "localhost");
+  expect(resolved("ip6-localhost", nullptr) == "::1:0", "by IPv6 alone");
+  expect(resolved(nullptr, "7", AI_PASSIVE) == "0.0.0.0:7 :::7", "AI_PASSIVE");
+  expect(resolved(nullptr, "7") == "::1:7 127.0.0.1:7", "without it, the loopback");
   expect(resolved("pool.ntp.org", "ntp") == std::to_string(EAI_NONAME), "no other host");
   expect(resolved("host99", nullptr) == std::to_string(EAI_NONAME), "nor one beyond the last");
   expect(resolved("host0", nullptr, AI_NUMERICHOST) == std::to_string(EAI_NONAME),
@@ -191,6 +263,25 @@ void check_names(const std::string& number) {
   const hostent* entry = gethostbyname("host1");
   expect(entry != nullptr && std::memcmp(entry->h_addr_list[0], "\x0A\x00\x00\x02", 4) == 0,
          "gethostbyname");
+  const hostent* entry6 = gethostbyname2("host1", AF_INET6);
+  expect(entry6 != nullptr && entry6->h_length == 16 && entry6->h_addr_list[0][15] == 2,
+         "gethostbyname2");
+  hostent own{};
+  hostent* result = nullptr;
+  char room[512];
+  int error = 0;
+  expect(gethostbyname_r("host2", &own, room, sizeof room, &result, &error) == 0 &&
+             result == &own && own.h_addr_list[0][3] == 3,
+         "gethostbyname_r");
+  expect(gethostbyname_r("host2", &own, room, 8, &result, &error) == ERANGE, "needs room");
+  const in_addr second{.s_addr = htonl(0x0A000002)};
+  entry = gethostbyaddr(&second, sizeof second, AF_INET);
+  expect(entry != nullptr && std::string(entry->h_name) == "host1", "gethostbyaddr");
+  expect(name_of("fd00::3") == "host2" && name_of("10.0.0.3") == "host2" &&
+             name_of("::1") == "localhost",
+         "names of addresses");
+  expect(name_of("fe80::aff:fe00:2%eth0") == "fe80::aff:fe00:2%eth0", "or their numbers");
+  expect(name_of("fd00::77", NI_NAMEREQD) == std::to_string(EAI_NONAME), "nobody's");
   expect(gethostbyname("nobody") == nullptr && h_errno == HOST_NOT_FOUND, "gethostbyname of none");
   char name[64];
   utsname system{};
@@ -208,6 +299,7 @@ int main(int count, char** words) {
   check_abilities();
   check_lists();
   check_links();
+  check_addresses();
   check_names(words[1]);
   finish();
 }

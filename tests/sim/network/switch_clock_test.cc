@@ -47,9 +47,9 @@ TEST(SwitchClock, KnowsEventMessagesOfVersion2) {
   EXPECT_FALSE(clock.corrects(ptp(0, 0, 43)));
   EXPECT_TRUE(clock.corrects(ptp(0, 0, 100)));
   Bytes with_trailer = ptp(0);
-  with_trailer.resize(52);
+  with_trailer.resize(124);
   EXPECT_TRUE(clock.corrects(with_trailer));
-  with_trailer.resize(53);
+  with_trailer.resize(125);
   EXPECT_FALSE(clock.corrects(with_trailer));
   // An NTP request of stratum 2 begins like an event message of version 2.
   Bytes ntp(48);

@@ -31,6 +31,11 @@ inline std::string test_program(const std::string& name) {
   return std::string(SIMBENCH_PROGRAMS) + "/simbench_" + name;
 }
 
+// A script of tests/programs.
+inline std::string test_script(const std::string& name) {
+  return std::string(SIMBENCH_SOURCE_DIR) + "/tests/programs/" + name;
+}
+
 class CallsOnHosts : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -40,11 +45,19 @@ class CallsOnHosts : public testing::Test {
                                std::vector<Words> slave,
                                const std::vector<scenarios::Override>& changes = {},
                                double seconds = 60) {
-    std::filesystem::remove_all(folder_);
-    const std::string path = test_program(program);
     for (std::vector<Words>* commands : {&master, &slave}) {
-      for (Words& each : *commands) each.insert(each.begin(), path);
+      for (Words& each : *commands) each.insert(each.begin(), test_program(program));
     }
+    return run_commands(std::move(master), std::move(slave), "simbench_" + program, changes,
+                        seconds);
+  }
+
+  // The same with whole commands, of which the first has this name.
+  std::vector<std::string> run_commands(std::vector<Words> master, std::vector<Words> slave,
+                                        const std::string& name,
+                                        const std::vector<scenarios::Override>& changes = {},
+                                        double seconds = 60) {
+    std::filesystem::remove_all(folder_);
     ProgramSync sync({.pipeline = "test",
                       .programs = {.master = std::move(master), .slave = std::move(slave)},
                       .shim = SIMBENCH_SHIM,
@@ -61,14 +74,14 @@ class CallsOnHosts : public testing::Test {
     }
     std::vector<std::string> outputs;
     for (std::size_t host = 0; host < kCallingHosts; ++host) {
-      outputs.push_back(output(host, program));
+      outputs.push_back(output(host, name));
     }
     return outputs;
   }
 
  private:
-  std::string output(std::size_t host, const std::string& program) const {
-    const auto path = fmt::format("{}/test/seed1/host{}/0_simbench_{}.log", folder_, host, program);
+  std::string output(std::size_t host, const std::string& name) const {
+    const auto path = fmt::format("{}/test/seed1/host{}/0_{}.log", folder_, host, name);
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();

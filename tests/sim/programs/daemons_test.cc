@@ -1,5 +1,7 @@
 // Debian's chronyd, ntpd and ptp4l, unmodified, in the simulated world: the limits that their own
 // test suites state.
+#include "tests/sim/programs/daemons.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,26 +13,11 @@
 #include "scenarios/loader.h"
 #include "sim/programs/program_sync.h"
 #include "tests/sim/host/service_world.h"
-#include "tests/sim/programs/real_programs.h"
 
 namespace simbench::sim {
 namespace {
 
 using testing::IsEmpty;
-
-constexpr const char* kChronydEnd = "\ncmdport 0\npidfile {files}/chronyd.pid\nbindcmdaddress /\n";
-
-class Daemons : public RealPrograms {
- protected:
-  ProgramSettings chronyd(const std::string& client) const {
-    const auto command = [](const char* file) {
-      return Command{"chronyd", "-d", "-f", std::string("{files}/") + file};
-    };
-    return settings({command("server.conf")}, {command("client.conf")},
-                    {{"server.conf", std::string("local stratum 1\nallow") + kChronydEnd},
-                     {"client.conf", client + kChronydEnd}});
-  }
-};
 
 // chrony's simulation tests: in sync within 120 to 210 s, then at most 1 ms, RMS 0.3 ms.
 TEST_F(Daemons, ChronydMeetsTheLimitsOfItsSimulationTests) {

@@ -2,6 +2,7 @@
 // with a note, whatever the bytes are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/timex.h>
@@ -21,6 +22,7 @@
 
 #include "algorithms/host_sync/join.h"
 #include "scenarios/loader.h"
+#include "shim/addresses.h"
 #include "sim/programs/program.h"
 #include "tests/sim/host/service_world.h"
 
@@ -94,6 +96,7 @@ class ProcessTest : public testing::Test {
     tasks.push_back(kernel.run());
     tasks.push_back(pulses.run());
     tasks.push_back(network.stamp_departures());
+    tasks.push_back(network.answer_refused());
     tasks.push_back(serve(program, heard));
     co_await join_all(std::move(tasks));
   }
@@ -191,12 +194,14 @@ class Hostile {
   explicit Hostile(std::uint64_t seed) : random_(seed) {}
 
   std::vector<Packet> packets(std::size_t count) {
-    std::vector<Packet> result{packet({.call = Call::kOpenSocket, .fd = 3, .a = SOCK_DGRAM}),
-                               packet({.call = Call::kOpenTimer, .fd = 4, .a = CLOCK_REALTIME}),
-                               packet({.call = Call::kOpenDevice, .fd = 5, .a = 0}),
-                               packet({.call = Call::kOpenDevice, .fd = 6, .a = 1}),
-                               packet({.call = Call::kBind, .fd = 3},
-                                      raw(shim::Address{.host = 0, .port = 9, .reserved = 0}))};
+    constexpr std::int64_t kFamilies[] = {AF_INET, AF_INET6, AF_PACKET | 3 << 16};
+    const std::int64_t family = kFamilies[below(3)];
+    std::vector<Packet> result{
+        packet({.call = Call::kOpenSocket, .fd = 3, .a = SOCK_DGRAM, .b = family}),
+        packet({.call = Call::kOpenTimer, .fd = 4, .a = CLOCK_REALTIME}),
+        packet({.call = Call::kOpenDevice, .fd = 5, .a = 0}),
+        packet({.call = Call::kOpenDevice, .fd = 6, .a = 1}),
+        packet({.call = Call::kBind, .fd = 3}, raw(shim::ipv4_address(0, 9)))};
     while (result.size() < count) result.push_back(damaged(request()));
     return result;
   }
@@ -230,9 +235,33 @@ class Hostile {
     return static_cast<T>(number());
   }
   shim::Address address() {
-    const std::uint32_t hosts[] = {0, 0x0A000001, 0x0A000002, 0x7F000001, small<std::uint32_t>()};
+    const shim::IpAddress hosts[] = {shim::mapped(0),
+                                     shim::mapped(0x0A000001),
+                                     shim::mapped(0x0A000002),
+                                     shim::mapped(0x7F000001),
+                                     shim::mapped(small<std::uint32_t>()),
+                                     {},
+                                     shim::kLoopback6,
+                                     shim::unique_local(2),
+                                     shim::link_local(0x0A000001),
+                                     shim::mapped(0xE0000181),
+                                     shim::packed({.card = {0x01, 0x80, 0xC2, 0, 0, 0x0E}})};
     const std::uint16_t ports[] = {0, 9, 123, small<std::uint16_t>()};
-    return {.host = hosts[below(5)], .port = ports[below(4)], .reserved = 0};
+    const std::uint16_t families[] = {AF_INET, AF_INET6, AF_PACKET, small<std::uint16_t>()};
+    return {.host = hosts[below(std::size(hosts))],
+            .scope = static_cast<std::uint32_t>(below(4)),
+            .port = ports[below(4)],
+            .family = families[below(4)]};
+  }
+  std::string filter() {
+    std::string code;
+    for (std::size_t i = below(6); i > 0; --i) {
+      code += raw(sock_filter{.code = static_cast<std::uint16_t>(below(0x100)),
+                              .jt = 0,
+                              .jf = 0,
+                              .k = small<std::uint32_t>()});
+    }
+    return code + raw(sock_filter{.code = BPF_RET | BPF_K, .jt = 0, .jf = 0, .k = 9});
   }
   std::string interests() {
     std::string data;
@@ -275,9 +304,13 @@ class Hostile {
         return pulse_parameters();
       case Call::kBind:
       case Call::kConnect:
+      case Call::kJoin:
         return raw(address());
+      case Call::kFilterArrivals:
+        return filter();
       case Call::kSend:
-        return raw(address()) + std::string(below(one_in(5) ? shim::kMostData : 100), 'x');
+        return raw(shim::Departure{.to = address(), .source = address()}) +
+               std::string(below(one_in(5) ? shim::kMostData : 100), 'x');
       default:
         return one_in(10) ? std::string(below(200), 'x') : "";
     }
@@ -286,7 +319,7 @@ class Hostile {
     // Those without threads and processes. Notes end the program, so there are few.
     constexpr auto kFirst = static_cast<std::size_t>(Call::kTakeExpirations) + 2;
     constexpr auto kDevices = static_cast<std::size_t>(Call::kOpenDevice);
-    constexpr auto kEnd = static_cast<std::size_t>(Call::kTakeStamps) + 2;  // and one that is none
+    constexpr auto kEnd = static_cast<std::size_t>(Call::kLookAtFile) + 2;  // and one that is none
     Call call{};
     do {
       const std::size_t number = below(kFirst + kEnd - kDevices);

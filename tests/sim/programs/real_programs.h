@@ -90,11 +90,6 @@ inline void expect_same(const LeftFiles& left, const LeftFiles& again) {
   EXPECT_EQ(again.size(), left.size());
 }
 
-// A script of tests/programs.
-inline std::string test_script(const std::string& name) {
-  return std::string(SIMBENCH_SOURCE_DIR) + "/tests/programs/" + name;
-}
-
 class RealPrograms : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(folder_); }
