@@ -73,12 +73,9 @@ std::string obstacle_to_nobody(const std::vector<std::string>& paths) {
 }
 
 void give_to_nobody(int descriptor) {
-  if (fchown(descriptor, kNobody, 0) != 0) return;
-  // Root that has no capabilities is let in as its group.
-  const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
   struct stat status {};
-  if (faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0) return;
-  if (fstat(descriptor, &status) == 0) fchmod(descriptor, S_ISDIR(status.st_mode) ? 0770 : 0660);
+  if (fstat(descriptor, &status) != 0 || fchown(descriptor, kNobody, 0) != 0) return;
+  fchmod(descriptor, S_ISDIR(status.st_mode) ? 0775 : 0664);
 }
 
 void give_to_nobody(const std::string& path) {

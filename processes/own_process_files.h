@@ -12,8 +12,7 @@ namespace simbench::processes {
 
 // fd: its descriptors, as closefrom() and Python's subprocess list them. maps: where its stack is,
 // for threads of Rust and of C++.
-inline constexpr const char* kOwnProcessFiles[] = {"cmdline", "comm",  "fd",    "limits",
-                                                   "maps",    "statm", "status"};
+inline constexpr const char* kOwnProcessFiles[] = {"cmdline", "comm", "fd", "limits", "maps"};
 
 // Makes async-signal-safe calls only.
 void hold_own_process_files(pid_t process);

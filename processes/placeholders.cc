@@ -31,10 +31,11 @@ bool lacks_drift(const std::string& text, const HostPlaces& places) {
   return text.find(kNtpDrift) != std::string::npos || text.find(kChronyDrift) != std::string::npos;
 }
 
-// The rights of a file that root makes, whatever the caller's umask is.
+// Whatever the caller's umask is. Its group's: root's, of which a program without rights may be
+// (processes/lesser_user.h).
 void make_usual(const std::filesystem::path& path) {
   const bool is_folder = std::filesystem::is_directory(path);
-  std::filesystem::permissions(path, std::filesystem::perms(is_folder ? 0755 : 0644));
+  std::filesystem::permissions(path, std::filesystem::perms(is_folder ? 0775 : 0664));
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 // then on, though its clock is its own again.
 //
 //   ProgramEndings endings(host, /*programs=*/2);
-//   endings.add(child.end_of(), {.at = from_ms(250), .log = "logs/0_chronyd.log"},
-//               /*clock_was_set=*/false);
+//   endings.add({.program = "chronyd", .how = "exited with status 1", .status = 1},
+//               {.at = from_ms(250), .log = "logs/0_chronyd.log"}, /*clock_was_set=*/false);
 //   for (const std::string& note : endings.notes()) print(note);
 #pragma once
 

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 char own_path[4096];
+MachineIds own_ids;
 
 struct sigaction fault_action {};                // the program's own
 void (*handlers[NSIG])(int, siginfo_t*, void*);  // likewise, of those that look at the sender
@@ -146,6 +147,10 @@ void on_fault(int signal, siginfo_t* info, void* stopped) {
   if (is_raised) raise(SIGSEGV);
 }
 
+bool is_id(std::uint64_t type) {
+  return type == AT_UID || type == AT_EUID || type == AT_GID || type == AT_EGID;
+}
+
 // 16 bytes that the kernel took from its chance.
 void replace_chance(unsigned char* bytes) {
   Received reply{.data = bytes, .capacity = 16};
@@ -155,6 +160,8 @@ void replace_chance(unsigned char* bytes) {
 }  // namespace
 
 const char* shim_path() { return own_path; }
+
+const MachineIds& machine_ids() { return own_ids; }
 
 void set_counter_hidden(bool hidden) {
   machine_call(SYS_prctl, PR_SET_TSC, hidden ? PR_TSC_SIGSEGV : PR_TSC_ENABLE, 0, 0, 0);
@@ -172,6 +179,9 @@ void hide_machine(char** environment) {
     auto* place = reinterpret_cast<unsigned char*>(fact->a_un.a_val);
     if (fact->a_type == AT_SYSINFO_EHDR) replace_clock_readers(place);
     if (fact->a_type == AT_RANDOM) replace_chance(place);
+    if (fact->a_type == AT_EUID) own_ids.user = static_cast<std::uint32_t>(fact->a_un.a_val);
+    if (fact->a_type == AT_EGID) own_ids.group = static_cast<std::uint32_t>(fact->a_un.a_val);
+    if (is_id(fact->a_type)) fact->a_un.a_val = 0;
   }
   handle_in_shim(SIGSEGV, on_fault);
   set_counter_hidden(true);

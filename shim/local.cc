@@ -264,6 +264,9 @@ SIMBENCH_CALL int inotify_init1(int flags) noexcept {
   return keep_local(machine_call(SYS_inotify_init1, flags));
 }
 SIMBENCH_CALL int inotify_init() noexcept { return inotify_init1(0); }
+SIMBENCH_CALL int inotify_add_watch(int fd, const char* path, std::uint32_t mask) noexcept {
+  return static_cast<int>(machine_call(SYS_inotify_add_watch, fd, OwnPath(path).text(), mask));
+}
 
 // Signals that are blocked stay with the process until they are read here.
 SIMBENCH_CALL int signalfd(int fd, const sigset_t* mask, int flags) noexcept {

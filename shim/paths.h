@@ -2,10 +2,10 @@
 //
 //   /files/NAME             the host's folder: NAME
 //   other absolute paths    the file of that name in the host's folder if it is there
-//                           (etc/ntp.conf), else the machine's;
-//                           folders of the machine's stay, and list the names of both
+//                           (etc/ntp.conf), else the machine's. Folders of the machine's stay, and
+//                           list the names of both
 //   /run, /var, /tmp, /dev/shm (and what is below): what is made there is in the host's folder,
-//                           with the folders that lead to it; these four list the host's files
+//                           with the folders that lead to it. These four list the host's files
 //   /proc, /sys             of the machine's only what the process is itself (shim/proc.h)
 //
 // The machine's files can be read as far as it is allowed; nothing of its is written. What it may

@@ -22,6 +22,7 @@
 
 #include "shim/begin.h"
 #include "shim/devices.h"
+#include "shim/hidden.h"
 #include "shim/link.h"
 #include "shim/paths.h"
 #include "shim/proc.h"
@@ -38,8 +39,7 @@ constexpr std::int64_t kEarliest = kWorldBegin - 3600 * kSecond;
 constexpr std::uint32_t kMountMask = 0x1000;
 
 std::int64_t born = INT64_MAX;  // the host's folder
-std::uint32_t machine_user = 0;
-std::uint32_t machine_group = 0;
+MachineIds folders;             // of that
 
 std::int64_t ns_of(const statx_timestamp& time) { return time.tv_sec * kSecond + time.tv_nsec; }
 
@@ -71,8 +71,8 @@ void show_own(struct statx& status) {
   status.stx_ctime = as_stamp(modified < kEarliest ? kEarliest : modified);
   status.stx_dev_major = major(kOwnDevice);
   status.stx_dev_minor = minor(kOwnDevice);
-  if (status.stx_uid == machine_user) status.stx_uid = 0;
-  if (status.stx_gid == machine_group) status.stx_gid = 0;
+  if (status.stx_uid == machine_ids().user || status.stx_uid == folders.user) status.stx_uid = 0;
+  if (status.stx_gid == machine_ids().group || status.stx_gid == folders.group) status.stx_gid = 0;
   if (S_ISDIR(status.stx_mode)) status.stx_size = kBlock;
   status.stx_blksize = kBlock;
   status.stx_blocks = (status.stx_size + kBlock - 1) / kBlock * (kBlock / kSector);
@@ -154,8 +154,7 @@ void begin_files() {
   // Without a time of making, that of the last change comes later than some files.
   const bool has_birth = (status.stx_mask & STATX_BTIME) != 0;
   born = ns_of(has_birth ? status.stx_btime : status.stx_ctime);
-  machine_user = static_cast<std::uint32_t>(machine_call(SYS_geteuid));
-  machine_group = static_cast<std::uint32_t>(machine_call(SYS_getegid));
+  folders = {.user = status.stx_uid, .group = status.stx_gid};
 }
 
 bool find_modified(int fd, timespec& modified) {

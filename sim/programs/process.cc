@@ -213,7 +213,7 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock, bool is_free) {
   const TrueTime asked = around_.host.true_now();
   if (is_free) {
     co_return Answer{.value = is_system(clock) ? epoch_ns(around_.host.system_clock().read(asked))
-                                               : nanoseconds_of(around_.host.steady_clock().now())};
+                                               : monotonic_ns(around_.host.steady_clock().now())};
   }
   std::int64_t reading = 0;
   if (is_system(clock)) {

@@ -53,7 +53,7 @@ Process::Answer Process::open_socket(const ChildRequest& request) {
                                .protocol = static_cast<std::uint16_t>(request.head.b >> 16)};
   }
   socket.on_arrival = [wake = around_.wake, object = object.get()] {
-    object->changed(POLLIN | POLLERR | POLLPRI);
+    object->changed(POLLIN | POLLOUT | POLLERR | POLLPRI | POLLHUP | POLLRDHUP);
     wake();
   };
   around_.network.open(socket);

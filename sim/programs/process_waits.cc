@@ -46,9 +46,8 @@ std::int16_t Process::readiness_of(const shim::Interest& interest) {
   const std::shared_ptr<OpenObject> object = object_of(interest.fd);
   if (object == nullptr) return POLLNVAL;
   // Timers and sets have no error that is told without being asked for.
-  const int always = object->socket() != nullptr   ? POLLERR
-                     : object->stream() != nullptr ? POLLERR | POLLHUP
-                                                   : 0;
+  const bool is_of_network = object->socket() != nullptr || object->stream() != nullptr;
+  const int always = is_of_network ? POLLERR | POLLHUP : 0;
   return static_cast<std::int16_t>(readiness(*object) & (interest.events | always));
 }
 

@@ -109,7 +109,8 @@ asio::awaitable<std::string> ask_by_stream(const char* host) {
 asio::awaitable<void> ask(const char* host) {
   const auto executor = co_await asio::this_coro::executor;
   udp::resolver resolver(executor);
-  const auto found = co_await resolver.async_resolve(host, std::to_string(kPort), use_awaitable);
+  const auto found =
+      co_await resolver.async_resolve(udp::v4(), host, std::to_string(kPort), use_awaitable);
   const udp::endpoint server = *found.begin();
   const auto [mean_ms, vain_ms, said] =
       co_await (ask_by_datagrams(server) && wait_in_vain(server) && ask_by_stream(host));

@@ -6,6 +6,7 @@
 #include <glob.h>
 #include <semaphore.h>
 #include <signal.h>
+#include <sys/inotify.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -115,6 +116,15 @@ void check_names() {
   expect(mkdir("/var/lib/own", 0755) == 0 && access("var/lib/own", F_OK) == 0, "/var is its own");
   expect(access("/run", F_OK) == 0 && opendir("/tmp") != nullptr, "so are /run and /tmp");
   expect_error(open("/proc/1/status", O_RDONLY), ENOENT, "there are no other processes");
+  const int watch = inotify_init1(IN_NONBLOCK);
+  expect(
+      mkdir("/run/watched", 0755) == 0 && inotify_add_watch(watch, "/run/watched", IN_CREATE) >= 0,
+      "inotify watches the host's folders");
+  write_text("/run/watched/new", "1");
+  char event[512];
+  expect(read(watch, event, sizeof event) > 0, "and sees what is made there");
+  expect_error(inotify_add_watch(watch, "/run/dbus", IN_CREATE), ENOENT, "not the machine's");
+  close(watch);
   const int up = open("/proc/uptime", O_RDONLY);
   const ssize_t size = read(up, room, sizeof room - 1);
   expect(size > 0 && std::llabs(std::atoll(room) - steady() / kSecond) <= 1, "/proc/uptime");

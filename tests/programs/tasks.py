@@ -6,6 +6,7 @@
 """
 
 import asyncio
+import socket
 import sys
 import time
 
@@ -49,7 +50,9 @@ async def serve():
 
 async def ask(host):
     loop = asyncio.get_running_loop()
-    link, asker = await loop.create_datagram_endpoint(Asker, remote_addr=(host, PORT))
+    link, asker = await loop.create_datagram_endpoint(
+        Asker, remote_addr=(host, PORT), family=socket.AF_INET
+    )
     link.sendto(b"datagram")
     say(await asker.answer)
     reader, writer = await asyncio.open_connection(host, PORT)

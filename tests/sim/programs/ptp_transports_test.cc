@@ -70,10 +70,7 @@ class PtpTransports : public Daemons {
   }
 
   std::string log_of(std::size_t host) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ + "/daemons/seed1/host" + std::to_string(host) + "/0_ptp4l.log")
-                .rdbuf();
-    return text.str();
+    return file(host, "0_ptp4l.log");
   }
   // The last path delay that the host's ptp4l prints.
   double path_delay_ns(std::size_t host) const {
