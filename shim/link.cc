@@ -167,7 +167,7 @@ std::int64_t ask_passing(const Request& request, Sent head, Sent tail, int passe
   return error == 0 ? answer.value : refuse(error);
 }
 
-const char* value_of(const char* name, char* const* environment) {
+const char* variable_in(const char* name, char* const* environment) {
   const std::size_t size = strlen(name);
   for (; *environment != nullptr; ++environment) {
     if (strncmp(*environment, name, size) == 0 && (*environment)[size] == '=') {
@@ -177,7 +177,7 @@ const char* value_of(const char* name, char* const* environment) {
   return nullptr;
 }
 
-int number_in(const char* text) {
+int digits_in(const char* text) {
   int number = 0;
   for (; *text >= '0' && *text <= '9'; ++text) number = 10 * number + (*text - '0');
   return number;
@@ -186,15 +186,15 @@ int number_in(const char* text) {
 // Before the constructors of all libraries, libc's among them (-z initfirst): the environment is
 // the argument's, and no other code has run.
 __attribute__((constructor)) void join_world(int /*count*/, char** /*words*/, char** environment) {
-  const char* number = value_of(kLinkVariable, environment);
+  const char* number = variable_in(kLinkVariable, environment);
   if (number == nullptr) return;
-  first_link = number_in(number);
+  first_link = digits_in(number);
   add_link(first_link);
   machine_call(SYS_fcntl, first_link, F_SETFD, FD_CLOEXEC);
   mark_process();
   serve_refused_calls();
-  take_folder(value_of(kFolderVariable, environment));
-  const char* kept = value_of(kDescriptorsVariable, environment);
+  take_folder(variable_in(kFolderVariable, environment));
+  const char* kept = variable_in(kDescriptorsVariable, environment);
   std::int32_t numbers[kMostDescriptors];
   std::size_t count = 0;
   if (kept != nullptr) count = take_descriptors(kept, numbers);

@@ -31,7 +31,7 @@ class OwnPath {
   explicit OwnPath(const char* path, Use use = Use::kReads);
   // Relative to an open folder, which does not matter for what is absolute.
   const char* text() const { return text_; }
-  // Of the host's folder and the machine's of this name, the other one: both have names. Null:
+  // The other one of the host's folder and the machine's of this name: both have names. Null:
   // there is one.
   const char* besides() const { return besides_; }
 

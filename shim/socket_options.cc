@@ -93,7 +93,7 @@ int set_timeout(std::int64_t& timeout_ns, const void* value, socklen_t size) {
   return 0;
 }
 
-timeval timeout_of(std::int64_t timeout_ns) {
+timeval as_timeval(std::int64_t timeout_ns) {
   if (timeout_ns < 0) return {};
   return {.tv_sec = timeout_ns / kSecond, .tv_usec = timeout_ns % kSecond / 1000};
 }
@@ -207,7 +207,7 @@ int wanted_number(int level, const void* value, socklen_t size) {
 }
 
 // A connection's port is free as soon as it is closed, and it has no stamps of its departures.
-bool is_told(int fd, const OptionRule& rule) {
+bool is_for_world(int fd, const OptionRule& rule) {
   if (!rule.is_told || is_netlink(fd)) return false;
   return is_socket(fd) || rule.as == SocketOption::kOnlyIpv6;
 }
@@ -216,7 +216,7 @@ int set_number(int fd, const OptionRule& rule, int value) {
   int kept = 0;
   if (!admit(rule, value, kept)) return -1;
   const bool is_of_ipv6 = rule.level == IPPROTO_IPV6;
-  if (is_told(fd, rule) && tell_world(fd, rule.as, kept, is_of_ipv6) < 0) return -1;
+  if (is_for_world(fd, rule) && tell_world(fd, rule.as, kept, is_of_ipv6) < 0) return -1;
   Numbers& known = numbers[number_of(fd)];
   known.is_set[place_of(rule)] = true;
   known.values[place_of(rule)] = kept;
@@ -308,7 +308,7 @@ int give(const void* found, std::size_t found_size, void* value, socklen_t* size
 int get_special(int fd, int level, int option, void* value, socklen_t* size) {
   const SocketState& state = state_of(fd);
   if (level == SOL_SOCKET) {
-    const timeval timeouts[] = {timeout_of(state.timeout_ns), timeout_of(state.send_timeout_ns)};
+    const timeval timeouts[] = {as_timeval(state.timeout_ns), as_timeval(state.send_timeout_ns)};
     InterfaceFacts facts{};
     const int stamping[] = {static_cast<int>(state.timestamping), 0};
     switch (option) {

@@ -43,7 +43,7 @@ struct Told {
   std::function<void(const std::vector<std::string>& notes, bool is_unset)> gone;
 };
 
-// Of a host.
+// Where the files of a host are.
 struct Folder {
   std::string path;
   std::string kept;  // as the user has named it; empty: it is not kept

@@ -69,9 +69,7 @@ class PtpTransports : public Daemons {
                                      {"/network/bandwidth_mbit_per_s", bandwidth_mbit_per_s}});
   }
 
-  std::string log_of(std::size_t host) const {
-    return file(host, "0_ptp4l.log");
-  }
+  std::string log_of(std::size_t host) const { return file(host, "0_ptp4l.log"); }
   // The last path delay that the host's ptp4l prints.
   double path_delay_ns(std::size_t host) const {
     const std::string text = log_of(host);
