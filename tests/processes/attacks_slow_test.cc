@@ -25,7 +25,6 @@ std::vector<AttackCase> attacks_on_time() {
   };
   return {
       {at("wait_for_ever"), _, ends("computed for 1 s without waiting")},
-      {at("stop_itself"), _, ends("computed for 1 s without waiting")},
       {at("ignore_all"), _, ends("computed for 1 s without waiting")},
       {at("compute_in_pieces", 500ms), _,
        ends("computed for 5 s in all, beside 10 ms for each request")},

@@ -124,6 +124,7 @@ std::vector<AttackCase> attacks_on_processes() {
                            "seccomp: succeeded", "personality: EPERM", "dumpable 1, dies by 9"})},
       {at("own_rules"), lines({"rules", "read: EACCES"})},
       // What the world makes of these is the world's; here, that they end and leave nothing.
+      {at("stop_itself"), lines({"stop: ESRCH"})},  // the world is asked
       {at("fork_bomb")},
       {at("vfork_bomb")},
       {at("fork_chain")},

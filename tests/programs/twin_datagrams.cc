@@ -372,6 +372,8 @@ void stamp_departures(const Family& family) {
   set_number(fd, family.level, family.receive_errors, 1);
   send_to(fd, "lost", Name(family.loopback, 9));
   stamped_packet(fd, is_v6);
+  // The refusal has the stamp of its arrival where anybody on the machine has asked for stamps.
+  say("no stamps", set_number(fd, SOL_SOCKET, SO_TIMESTAMPING, SOF_TIMESTAMPING_OPT_CMSG));
   tell("of what was refused", error_of_queue(fd));
   say("alone", set_number(fd, SOL_SOCKET, SO_TIMESTAMPING,
                           kFlags | SOF_TIMESTAMPING_OPT_TSONLY | SOF_TIMESTAMPING_OPT_CMSG));
