@@ -174,6 +174,18 @@ std::string why_root(const Child::Settings& settings) {
                      std::filesystem::path(settings.command.at(0)).filename().string(), obstacle);
 }
 
+void agree_on_user(std::vector<Child::Settings>& programs) {
+  const auto stays = [](const Child::Settings& each) { return !why_root(each).empty(); };
+  const bool as_nobody = is_root() && !std::ranges::any_of(programs, stays);
+  for (Child::Settings& each : programs) {
+    each.as_nobody = as_nobody;
+    if (!as_nobody) continue;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(each.folder)) {
+      give_to_nobody(entry.path());
+    }
+  }
+}
+
 Child::Child(const Settings& settings)
     : name_(std::filesystem::path(settings.command.at(0)).filename()),
       patience_(settings.patience),
@@ -210,17 +222,18 @@ std::string Child::start(const Settings& settings, int& link) {
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
   const std::string& program = program_of(settings);
+  const bool as_nobody = settings.as_nobody.value_or(is_root() && why_root(settings).empty());
   Confinement confinement({.folder = settings.folder,
                            .readable = readable_paths(readable_of(settings, program)),
                            .served = settings.served,
-                           .as_nobody = is_root() && why_root(settings).empty()});
+                           .as_nobody = as_nobody});
   const int folder = open_folder_in(AT_FDCWD, settings.folder.c_str());
   log_ = ProgramLog(folder, settings.log_name);
   if (log_.descriptor() < 0) {
     close(folder);
     return fmt::format("no {}: {}", settings.log_name, std::strerror(log_.error()));
   }
-  if (is_root()) {
+  if (as_nobody) {
     give_to_nobody(folder);
     give_to_nobody(log_.descriptor());
   }

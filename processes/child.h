@@ -105,7 +105,8 @@ class Child {
     FolderLimits folder_limits{};
     std::shared_ptr<RunUse> run{};  // what its run's programs use; empty: it is alone
     Served served = Served::kAll;
-    int clock_page = -1;  // kClock: the descriptor of its memory (shim/clock_page.h)
+    std::optional<bool> as_nobody{};  // nothing: where that can be (processes/lesser_user.h)
+    int clock_page = -1;              // kClock: the descriptor of its memory (shim/clock_page.h)
     // The other end of a link that is there: nothing is started. Whose processes it belongs to
     // (use()), if limits are to be looked at while it computes.
     int link = -1;
@@ -163,5 +164,7 @@ class Child {
 
 // Whether a program of these settings would be root's and stay it, and why: one line, or empty.
 std::string why_root(const Child::Settings& settings);
+// For root's programs that share a folder: all are nobody's, who is given the folder, or none is.
+void agree_on_user(std::vector<Child::Settings>& programs);
 
 }  // namespace simbench::processes

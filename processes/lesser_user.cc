@@ -73,9 +73,7 @@ std::string obstacle_to_nobody(const std::vector<std::string>& paths) {
 }
 
 void give_to_nobody(int descriptor) {
-  struct stat status {};
-  if (fstat(descriptor, &status) != 0 || fchown(descriptor, kNobody, 0) != 0) return;
-  fchmod(descriptor, S_ISDIR(status.st_mode) ? 0775 : 0664);
+  if (fchown(descriptor, kNobody, kNobody) != 0) errno = 0;  // it stays root's
 }
 
 void give_to_nobody(const std::string& path) {

@@ -24,7 +24,7 @@ bool is_root();
 // Paths that are not there are in nobody's way. Lists of access rights (acl(5)) are not looked at.
 std::string obstacle_to_nobody(const std::vector<std::string>& paths);
 
-// As root: the file or folder is nobody's from now on, and root's too where it has no capabilities.
+// As root: the file or folder is nobody's from now on.
 void give_to_nobody(int descriptor);
 void give_to_nobody(const std::string& path);  // no link
 

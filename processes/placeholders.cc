@@ -31,11 +31,10 @@ bool lacks_drift(const std::string& text, const HostPlaces& places) {
   return text.find(kNtpDrift) != std::string::npos || text.find(kChronyDrift) != std::string::npos;
 }
 
-// Whatever the caller's umask is. Its group's: root's, of which a program without rights may be
-// (processes/lesser_user.h).
+// The rights of a file that root makes, whatever the caller's umask is.
 void make_usual(const std::filesystem::path& path) {
   const bool is_folder = std::filesystem::is_directory(path);
-  std::filesystem::permissions(path, std::filesystem::perms(is_folder ? 0775 : 0664));
+  std::filesystem::permissions(path, std::filesystem::perms(is_folder ? 0755 : 0644));
 }
 
 }  // namespace
@@ -81,7 +80,6 @@ std::string make_folder(const std::filesystem::path& folder,
     const timespec begin{.tv_sec = shim::kWorldBegin / 1'000'000'000, .tv_nsec = 0};
     const timespec both[] = {begin, begin};
     utimensat(AT_FDCWD, entry.path().c_str(), both, 0);
-    if (is_root()) give_to_nobody(entry.path());
   }
   return folder.string();
 }

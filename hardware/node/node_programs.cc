@@ -60,7 +60,6 @@ class RunningNodePrograms {
 
   void start(Child::Settings child) {
     child.log_name = fmt::format("{}_{}.log", children_.size(), child.log_name);
-    child.served = processes::Served::kClock;
     child.clock_page = clock_.page();
     children_.emplace_back(child);
   }
@@ -121,17 +120,20 @@ Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> comm
   const std::string folder = make_folder(host.id());
   const processes::HostPlaces places{
       .host = host.id(), .interface = settings_.interface.c_str(), .files = folder};
+  std::vector<Child::Settings> children;
   for (const HostPrograms::Command& command : commands) {
     const auto path = settings_.paths.find(command.front());
-    Child::Settings child{.command = processes::fill(command, places),
-                          .program = path == settings_.paths.end() ? "" : path->second,
-                          .environment = processes::fill(settings_.programs.environment, places),
-                          .folder = folder,
-                          .log_name = scenarios::program_name(command),
-                          .shim = settings_.shim,
-                          .readable = processes::fill(settings_.programs.readable, places)};
-    programs.start(std::move(child));
+    children.push_back({.command = processes::fill(command, places),
+                        .program = path == settings_.paths.end() ? "" : path->second,
+                        .environment = processes::fill(settings_.programs.environment, places),
+                        .folder = folder,
+                        .log_name = scenarios::program_name(command),
+                        .shim = settings_.shim,
+                        .readable = processes::fill(settings_.programs.readable, places),
+                        .served = processes::Served::kClock});
   }
+  processes::agree_on_user(children);
+  for (Child::Settings& child : children) programs.start(std::move(child));
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
   co_await programs.run(duration);

@@ -11,15 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/time.h"
 #include "shim/protocol.h"
 #include "sim/programs/kernel_clock.h"
 
 namespace simbench::sim {
 namespace {
 
-constexpr std::int64_t kASecond = 1'000'000'000;
-
-std::int64_t file_ns(const statx_timestamp& time) { return time.tv_sec * kASecond + time.tv_nsec; }
+std::int64_t file_ns(const statx_timestamp& time) { return time.tv_sec * kSecondNs + time.tv_nsec; }
 
 std::optional<struct statx> status_of(int parent, const char* name) {
   struct statx status {};
@@ -98,7 +97,7 @@ void HostFiles::stamp(int parent, const char* name, std::int64_t born) {
                           .file = status->stx_ino,
                           .born = file_ns(status->stx_btime),
                           .modified = modified});
-  const timespec time{.tv_sec = seen.modified / kASecond, .tv_nsec = seen.modified % kASecond};
+  const timespec time{.tv_sec = seen.modified / kSecondNs, .tv_nsec = seen.modified % kSecondNs};
   const timespec both[] = {time, time};
   utimensat(parent, name, both, AT_SYMLINK_NOFOLLOW | (*name == '\0' ? AT_EMPTY_PATH : 0));
 }

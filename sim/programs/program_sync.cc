@@ -72,24 +72,23 @@ class RunningPrograms {
     told_.gone(endings_.notes(), host_.id() != kMaster && !kernel_.was_steered() && !is_said);
   }
 
-  void start(const HostPrograms::Command& command, const ProgramSettings& settings,
-             std::shared_ptr<processes::RunUse> run) {
-    const std::size_t number = programs_.size();
-    const HostPlaces places = places_of(host_);
-    const auto path = settings.paths.find(command.front());
-    Child::Settings child{
-        .command = fill(command, places),
-        .program = path == settings.paths.end() ? "" : path->second,
-        .environment = fill(settings.programs.environment, places),
-        .folder = folder_.path,
-        .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
-        .shim = settings.shim,
-        .readable = fill(settings.programs.readable, places),
-        .run = std::move(run)};
-    if (settings.patience) child.patience = *settings.patience;
-    logs_.push_back(folder_.kept.empty() ? "" : fmt::format("{}/{}", folder_.kept, child.log_name));
-    programs_.emplace_back(
-        Program::Surroundings{host_, network_, kernel_, card_, pulses_, processes_, files_}, child);
+  void start(const std::vector<HostPrograms::Command>& commands, const ProgramSettings& settings,
+             const std::shared_ptr<processes::RunUse>& run) {
+    std::vector<Child::Settings> children;
+    for (const HostPrograms::Command& command : commands) {
+      children.push_back(child_settings(command, settings));
+      children.back().log_name =
+          fmt::format("{}_{}.log", logs_.size(), scenarios::program_name(command));
+      children.back().run = run;
+      logs_.push_back(
+          folder_.kept.empty() ? "" : fmt::format("{}/{}", folder_.kept, children.back().log_name));
+    }
+    processes::agree_on_user(children);
+    for (const Child::Settings& each : children) {
+      programs_.emplace_back(
+          Program::Surroundings{host_, network_, kernel_, card_, pulses_, processes_, files_},
+          each);
+    }
   }
 
   // `needed`: how long the programs take to synchronise the host. `duration`: nothing, for ever.
@@ -111,6 +110,20 @@ class RunningPrograms {
   }
 
  private:
+  Child::Settings child_settings(const HostPrograms::Command& command,
+                                 const ProgramSettings& settings) const {
+    const HostPlaces places = places_of(host_);
+    const auto path = settings.paths.find(command.front());
+    Child::Settings child{.command = fill(command, places),
+                          .program = path == settings.paths.end() ? "" : path->second,
+                          .environment = fill(settings.programs.environment, places),
+                          .folder = folder_.path,
+                          .shim = settings.shim,
+                          .readable = fill(settings.programs.readable, places)};
+    if (settings.patience) child.patience = *settings.patience;
+    return child;
+  }
+
   Task<void> serve(std::size_t number) {
     Program& program = programs_[number];
     const TrueTime begin = host_.true_now();
@@ -211,7 +224,7 @@ Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> comma
              notes_.insert(notes_.end(), notes.begin(), notes.end());
              if (is_unset) unset_.insert(id);
            }});
-  for (const HostPrograms::Command& command : commands) programs.start(command, settings_, run_);
+  programs.start(commands, settings_, run_);
   std::optional<Nanoseconds> duration;
   if (!settings_.programs.run_during_capture) duration = warm_up();
   co_await programs.run(std::max(*warm_up(), kLeastNeeded), duration);

@@ -172,9 +172,19 @@ TEST_F(ConfinementTest, RootsProgramsAreNobodys) {
             "simbench_escapes runs as root, without root's capabilities, and not as "
             "nobody: nobody may not enter or read " +
                 closed.path().string());
+  chown(folder_.path().c_str(), 0, 0);
   EXPECT_EQ(note_of(own), "simbench_escapes: exited with status 0: still there");
   EXPECT_EQ(folder_.content("program0.log"), powerless);
   EXPECT_EQ(owner_of("made"), std::pair(0U, 0U));
+  // Programs that share a folder are of one user.
+  std::vector<Child::Settings> both{settings({"user"}), own};
+  agree_on_user(both);
+  EXPECT_FALSE(both[0].as_nobody.value());
+  EXPECT_FALSE(both[1].as_nobody.value());
+  both.pop_back();
+  agree_on_user(both);
+  EXPECT_TRUE(both[0].as_nobody.value());
+  EXPECT_EQ(owner_of("closed"), std::pair(65534U, 65534U));
 }
 
 TEST_F(ConfinementTest, ItHasNoNeighbours) {
