@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenarios/loader.h"
+#include "shim/protocol.h"
 #include "sim/programs/program_sync.h"
 #include "tests/sim/host/service_world.h"
 
@@ -37,15 +38,15 @@ Attacked attack(const std::vector<std::string>& words) {
   programs.slave[0].insert(programs.slave[0].end(), words.begin(), words.end());
   scenarios::HostPrograms honest = programs;
   honest.slave = {{program("cristian"), "follow", "{master}"}};
-  const auto sync_of = [](const scenarios::HostPrograms& each) {
+  const auto sync_of = [](const scenarios::HostPrograms& each, std::chrono::milliseconds patience) {
     return ProgramSettings{.pipeline = "test",
                            .programs = each,
                            .shim = SIMBENCH_SHIM,
-                           .patience = std::chrono::seconds(2),
+                           .patience = patience,
                            .hosts = 3};
   };
-  ProgramSync attacking(sync_of(programs));
-  ProgramSync following(sync_of(honest));
+  ProgramSync attacking(sync_of(programs, std::chrono::milliseconds(300)));
+  ProgramSync following(sync_of(honest, std::chrono::seconds(10)));
   ServiceWorld world(
       scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}}));
   const auto begin = std::chrono::steady_clock::now();
@@ -86,8 +87,8 @@ TEST(LinkAttacks, WhatIsNoRequestEndsTheProgram) {
 }
 
 TEST(LinkAttacks, NumbersOutOfRangeEndTheProgramOrAreAnswered) {
-  constexpr int kCalls = 40;  // and some that there are none of
-  for (int call = 0; call < kCalls; ++call) {
+  constexpr int kEnd = static_cast<int>(shim::Call::kLookAtFile) + 3;  // two that there are none of
+  for (int call = 0; call < kEnd; ++call) {
     const Attacked result = attack({"extremes", std::to_string(call)});
     SCOPED_TRACE(call);
     expect_that_others_go_on(result);
