@@ -180,7 +180,7 @@ Task<void> Program::leave(ProgramThread& thread) {
 Task<void> Program::end_process(Process& process) {
   if (!is_stopped_) {
     co_await process.close_all();
-    process.await_end();
+    if (reason_.empty()) process.await_end();  // else it will be killed
     if (Process* parent = around_.processes.find(process.parent())) parent->look_at_signals();
     for (Process* each : around_.processes.all()) {
       if (each->parent() == process.number()) each->set_parent(1);
