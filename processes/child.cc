@@ -158,6 +158,7 @@ std::vector<std::string> environment_of(const Child::Settings& settings) {
   all["LD_PRELOAD"] = settings.shim;
   all[shim::kLinkVariable] = std::to_string(kLink);
   std::vector<std::string> environment;
+  environment.reserve(all.size());
   for (const auto& [name, value] : all) environment.push_back(fmt::format("{}={}", name, value));
   return environment;
 }

@@ -34,7 +34,7 @@ bool lacks_drift(const std::string& text, const HostPlaces& places) {
 // The rights of a file that root makes, whatever the caller's umask is.
 void make_usual(const std::filesystem::path& path) {
   const bool is_folder = std::filesystem::is_directory(path);
-  std::filesystem::permissions(path, std::filesystem::perms(is_folder ? 0755 : 0644));
+  std::filesystem::permissions(path, static_cast<std::filesystem::perms>(is_folder ? 0755 : 0644));
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ void replace_clock_readers(unsigned char* image) {
 // RDTSC and RDTSCP give nanoseconds of the world's oscillator: a counter of 1 GHz.
 bool serve_counter(ucontext_t& context) {
   auto& registers = context.uc_mcontext.gregs;
-  const auto* code = reinterpret_cast<const unsigned char*>(registers[REG_RIP]);
+  const auto* code = at<const unsigned char>(registers[REG_RIP]);
   const bool is_plain = code[0] == 0x0F && code[1] == 0x31;
   const bool has_processor = code[0] == 0x0F && code[1] == 0x01 && code[2] == 0xF9;
   if (!is_plain && !has_processor) return false;
@@ -176,7 +176,7 @@ void hide_machine(char** environment) {
     snprintf(own_path, sizeof own_path, "%.*s", static_cast<int>(strcspn(path, ": ")), path);
   }
   for (auto* fact = reinterpret_cast<Elf64_auxv_t*>(entry + 1); fact->a_type != AT_NULL; ++fact) {
-    auto* place = reinterpret_cast<unsigned char*>(fact->a_un.a_val);
+    auto* place = at<unsigned char>(static_cast<Word>(fact->a_un.a_val));
     if (fact->a_type == AT_SYSINFO_EHDR) replace_clock_readers(place);
     if (fact->a_type == AT_RANDOM) replace_chance(place);
     if (fact->a_type == AT_EUID) own_ids.user = static_cast<std::uint32_t>(fact->a_un.a_val);

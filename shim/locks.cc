@@ -77,8 +77,8 @@ Word requeue(Value* from, Value* to, int operation, std::int64_t woken, std::int
 // FUTEX_WAKE_OP: changes the second place, wakes at the first, and at the second if its old value
 // compares so.
 Word wake_and_change(const Word* a, int operation) {
-  auto* first = reinterpret_cast<Value*>(a[0]);
-  auto* second = reinterpret_cast<Value*>(a[4]);
+  auto* first = at<Value>(a[0]);
+  auto* second = at<Value>(a[4]);
   const auto code = static_cast<Value>(a[5]);
   auto operand = static_cast<std::int32_t>(code << 8U) >> 20U;
   const std::int32_t compared = static_cast<std::int32_t>(code << 20U) >> 20U;
@@ -143,9 +143,9 @@ Word give_owned(Value* place, int operation) {
 }  // namespace
 
 Word serve_futex(const Word* a) {
-  auto* place = reinterpret_cast<Value*>(a[0]);
+  auto* place = at<Value>(a[0]);
   const auto operation = static_cast<int>(a[1]);
-  const auto* time = reinterpret_cast<const timespec*>(a[3]);
+  const auto* time = at<const timespec>(a[3]);
   const int command = operation & FUTEX_CMD_MASK;
   const bool is_system = (operation & FUTEX_CLOCK_REALTIME) != 0;
   const auto value = static_cast<Value>(a[2]);
@@ -166,7 +166,7 @@ Word serve_futex(const Word* a) {
       if (value_at(place) != static_cast<Value>(a[5])) return -EAGAIN;
       [[fallthrough]];
     case FUTEX_REQUEUE:
-      return requeue(place, reinterpret_cast<Value*>(a[4]), operation, static_cast<int>(a[2]),
+      return requeue(place, at<Value>(a[4]), operation, static_cast<int>(a[2]),
                      static_cast<int>(a[3]));
     case FUTEX_WAKE_OP:
       return wake_and_change(a, operation);

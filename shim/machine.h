@@ -53,6 +53,12 @@ Word to_word(Argument argument) {
   }
 }
 
+// The pointer that an argument or a result is.
+template <class Value>
+Value* at(Word word) {
+  return reinterpret_cast<Value*>(word);  // NOLINT: the kernel has it as a number
+}
+
 // As libc's syscall(): returns -1 with errno.
 template <class... Arguments>
 Word machine_call(Word number, Arguments... arguments) {

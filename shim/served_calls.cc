@@ -25,11 +25,6 @@
 namespace simbench::shim {
 namespace {
 
-template <class Value>
-Value* at(Word word) {
-  return reinterpret_cast<Value*>(word);
-}
-
 // What a function of libc's returned, as the kernel has it.
 Word as_kernel(std::int64_t result) { return result == -1 ? -errno : static_cast<Word>(result); }
 

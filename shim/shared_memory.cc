@@ -31,7 +31,7 @@ int private_segments = 0;
 
 class SegmentName {
  public:
-  explicit SegmentName(int segment) {
+  explicit SegmentName(int segment) {  // NOLINT: which fills the text
     snprintf(text_, sizeof text_, "/dev/shm/sysv-%08x", static_cast<unsigned>(segment));
   }
   const char* text() const { return text_; }
@@ -77,9 +77,9 @@ SIMBENCH_CALL int shmget(key_t key, std::size_t size, int flags) {
 }
 
 SIMBENCH_CALL void* shmat(int segment, const void* address, int flags) {
-  void* const failed = reinterpret_cast<void*>(-1);
+  void* const failed = at<void>(-1);
   if (!is_simulated()) {
-    return reinterpret_cast<void*>(machine_call(SYS_shmat, segment, address, flags));
+    return at<void>(machine_call(SYS_shmat, segment, address, flags));
   }
   const int file = open_segment(segment, O_RDWR);
   if (file < 0) {

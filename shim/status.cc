@@ -191,23 +191,25 @@ SIMBENCH_CALL int fstatat64(int, const char*, struct stat64*, int)
 SIMBENCH_CALL int fstat64(int, struct stat64*) __attribute__((alias("fstat")));
 
 // What programs that were compiled before glibc 2.33 call.
-SIMBENCH_CALL int __xstat(int /*version*/, const char* path, struct stat* status) {
-  return stat(path, status);
-}
-SIMBENCH_CALL int __lxstat(int /*version*/, const char* path, struct stat* status) {
+SIMBENCH_CALL int old_stat(int, const char*, struct stat*) __asm__("__xstat");
+SIMBENCH_CALL int old_lstat(int, const char*, struct stat*) __asm__("__lxstat");
+SIMBENCH_CALL int old_fstat(int, int, struct stat*) __asm__("__fxstat");
+SIMBENCH_CALL int old_fstatat(int, int, const char*, struct stat*, int) __asm__("__fxstatat");
+int old_stat(int /*version*/, const char* path, struct stat* status) { return stat(path, status); }
+int old_lstat(int /*version*/, const char* path, struct stat* status) {
   return lstat(path, status);
 }
-SIMBENCH_CALL int __fxstat(int /*version*/, int fd, struct stat* status) {
-  return fstat(fd, status);
-}
-SIMBENCH_CALL int __fxstatat(int /*version*/, int folder, const char* path, struct stat* status,
-                             int flags) {
+int old_fstat(int /*version*/, int fd, struct stat* status) { return fstat(fd, status); }
+int old_fstatat(int /*version*/, int folder, const char* path, struct stat* status, int flags) {
   return fstatat(folder, path, status, flags);
 }
-SIMBENCH_CALL int __xstat64(int, const char*, struct stat*) __attribute__((alias("__xstat")));
-SIMBENCH_CALL int __lxstat64(int, const char*, struct stat*) __attribute__((alias("__lxstat")));
-SIMBENCH_CALL int __fxstat64(int, int, struct stat*) __attribute__((alias("__fxstat")));
-SIMBENCH_CALL int __fxstatat64(int, int, const char*, struct stat*, int)
+SIMBENCH_CALL int old_stat64(int, const char*, struct stat*) __asm__("__xstat64")
+    __attribute__((alias("__xstat")));
+SIMBENCH_CALL int old_lstat64(int, const char*, struct stat*) __asm__("__lxstat64")
+    __attribute__((alias("__lxstat")));
+SIMBENCH_CALL int old_fstat64(int, int, struct stat*) __asm__("__fxstat64")
+    __attribute__((alias("__fxstat")));
+SIMBENCH_CALL int old_fstatat64(int, int, const char*, struct stat*, int) __asm__("__fxstatat64")
     __attribute__((alias("__fxstatat")));
 
 SIMBENCH_CALL int statx(int folder, const char* path, int flags, unsigned int mask,

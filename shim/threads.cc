@@ -83,7 +83,7 @@ struct OldStart {
 void* run_old(void* given) {
   const OldStart start = *static_cast<OldStart*>(given);
   munmap(given, sizeof(OldStart));
-  return reinterpret_cast<void*>(static_cast<std::intptr_t>(start.routine(start.argument)));
+  return at<void>(start.routine(start.argument));
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ struct LocalFile {
 };
 LocalFile local_files[64];
 
-void* cookie_of(int fd) { return reinterpret_cast<void*>(static_cast<std::intptr_t>(fd)); }
+void* cookie_of(int fd) { return at<void>(fd); }
 int fd_of(void* cookie) { return static_cast<int>(reinterpret_cast<std::intptr_t>(cookie)); }
 
 ssize_t read_local(void* cookie, char* data, std::size_t size) {

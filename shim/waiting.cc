@@ -69,8 +69,8 @@ bool is_of_the_kernel(Kind kind) { return !is_of_the_world(kind) || kind == Kind
 
 // What of these the world and the kernel watch.
 struct Watched {
-  pollfd* real;
-  Interest* simulated;
+  pollfd* real = nullptr;
+  Interest* simulated = nullptr;
   std::size_t asked = 0;
   bool watches_real = false;
 };

@@ -242,6 +242,7 @@ std::string failures_text(const SweepPlan& plan, const std::vector<ResponseRow>&
     ++known->points;
   }
   std::vector<std::string> sentences;
+  sentences.reserve(failures.size());
   for (const Failure& each : failures) {
     sentences.push_back(fmt::format("{} failed at {} of {}: a program ended; at {}: {}.",
                                     plan.pipelines[each.pipeline], each.points,

@@ -37,6 +37,28 @@ bool is_system(std::int64_t clock) {
          clock == CLOCK_REALTIME_ALARM;
 }
 
+bool is_about_sockets(Call call) {
+  switch (call) {
+    case Call::kSetOption:
+    case Call::kBind:
+    case Call::kConnect:
+    case Call::kName:
+    case Call::kPeerName:
+    case Call::kReceive:
+    case Call::kCountInput:
+    case Call::kSocketError:
+    case Call::kListen:
+    case Call::kAccept:
+    case Call::kShutDown:
+    case Call::kJoin:
+    case Call::kFilterArrivals:
+    case Call::kCountArrivals:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 Process::Process(const Surroundings& surroundings, std::int32_t number, std::int32_t parent)
@@ -101,6 +123,7 @@ void Process::count_request() {
 Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest request) {
   if (is_of_stream(request)) co_return co_await of_stream(std::move(request));
   if (is_about_devices(request.head.call)) co_return of_device(request);
+  if (is_about_sockets(request.head.call)) co_return of_socket(request);
   switch (request.head.call) {
     case Call::kReadClock:
       co_return co_await read_clock(request.head.a, request.head.b != 0);
@@ -112,21 +135,6 @@ Task<Process::Answer> Process::answer(ProgramThread& thread, ChildRequest reques
       co_return co_await send(std::move(request));
     case Call::kWait:
       co_return co_await wait(thread, std::move(request));
-    case Call::kSetOption:
-    case Call::kBind:
-    case Call::kConnect:
-    case Call::kName:
-    case Call::kPeerName:
-    case Call::kReceive:
-    case Call::kCountInput:
-    case Call::kSocketError:
-    case Call::kListen:
-    case Call::kAccept:
-    case Call::kShutDown:
-    case Call::kJoin:
-    case Call::kFilterArrivals:
-    case Call::kCountArrivals:
-      co_return of_socket(request);
     case Call::kSetTimer:
     case Call::kQueryTimer:
     case Call::kReadTimer:

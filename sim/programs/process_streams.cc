@@ -19,7 +19,7 @@ bool Process::is_of_stream(const ChildRequest& request) const {
 }
 
 std::shared_ptr<OpenObject> Process::add_stream(int fd, std::shared_ptr<StreamSocket> stream) {
-  const std::shared_ptr<OpenObject> object = open(fd, stream);
+  std::shared_ptr<OpenObject> object = open(fd, stream);
   stream->on_change = [wake = around_.wake, object = std::weak_ptr(object)] {
     constexpr int kAny = POLLIN | POLLOUT | POLLERR | POLLHUP | POLLRDHUP;
     if (const std::shared_ptr<OpenObject> known = object.lock()) known->changed(kAny);

@@ -128,7 +128,7 @@ int PulseDevices::stamp_pulses(bool does) {
 
 std::vector<std::int64_t> PulseDevices::take_stamps(std::size_t most) {
   const auto end = stamps_.begin() + static_cast<std::ptrdiff_t>(std::min(most, stamps_.size()));
-  const std::vector<std::int64_t> taken(stamps_.begin(), end);
+  std::vector<std::int64_t> taken(stamps_.begin(), end);
   stamps_.erase(stamps_.begin(), end);
   return taken;
 }
