@@ -88,8 +88,8 @@ void take_folder(const char* given) {
 
 const char* own_folder() { return folder; }
 
-OwnPath::OwnPath(const char* path, Use use)
-    : text_(path) {  // NOLINT: room_ is filled if it is used
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): room_ is filled if it is used
+OwnPath::OwnPath(const char* path, Use use) : text_(path) {
   if (!is_simulated() || path == nullptr || path[0] != '/' || folder[0] == '\0') return;
   if (is_below(path, folder)) return;
   const char* rest = path;
