@@ -54,18 +54,32 @@ class OwnName {
     const bool is_here =
         machine_call(SYS_getcwd, here, sizeof here) > 0 && strcmp(here, own_folder()) == 0;
     if (is_here && strlen(text) > strlen(here) + 1) text += strlen(here) + 1;
+    char short_text[PATH_MAX];
+    if (strlen(text) >= sizeof own_.sun_path && strlen(text) > strlen(own_folder())) {
+      folder_ = static_cast<int>(
+          machine_call(SYS_openat, AT_FDCWD, own_folder(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+      snprintf(short_text, sizeof short_text, "/proc/self/fd/%d%s", folder_,
+               text + strlen(own_folder()));
+      text = short_text;
+    }
     if (strlen(text) >= sizeof own_.sun_path) return;
     memset(own_.sun_path, 0, sizeof own_.sun_path);
     memcpy(own_.sun_path, text, strlen(text));
     name_ = reinterpret_cast<const sockaddr*>(&own_);
     size_ = static_cast<socklen_t>(kBegin + strlen(text) + 1);
   }
+  ~OwnName() {
+    if (folder_ >= 0) machine_call(SYS_close, folder_);
+  }
+  OwnName(const OwnName&) = delete;
+  OwnName& operator=(const OwnName&) = delete;
   const sockaddr* name() const { return name_; }
   socklen_t size() const { return size_; }
 
  private:
   const sockaddr* name_;
   socklen_t size_;
+  int folder_ = -1;  // open while the call is made: by it, names are short wherever the folder is
   sockaddr_un own_{};
 };
 

@@ -156,7 +156,7 @@ class RealPrograms : public testing::Test {
     const Course first = run(programs, scenario, duration_s, bound_s).at(0);
     const LeftFiles left = files_below(hosts_folder());
     std::filesystem::remove_all(folder_);
-    folder_ += "_of_a_longer_name";
+    folder_ += "_of_a_name_longer_than_those_of_sockets_may_be" + std::string(60, '_');
     between_runs_();
     const Course second = run(programs, scenario, duration_s, bound_s).at(0);
     EXPECT_EQ(first.rms_s, second.rms_s);
