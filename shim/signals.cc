@@ -122,7 +122,7 @@ int signal_of(const sigevent& event) {
   switch (event.sigev_notify) {
     case SIGEV_NONE:
       return 0;
-    case SIGEV_THREAD_ID:  // there is one thread
+    case SIGEV_THREAD_ID:  // the process has it
     case SIGEV_SIGNAL:
       return is_signal ? event.sigev_signo : -1;
     case SIGEV_THREAD:
