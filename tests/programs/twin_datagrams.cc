@@ -85,24 +85,38 @@ std::string describe_error(const msghdr& message) {
   return text;
 }
 
+// The next message of the error queue.
+class QueuedError {
+ public:
+  explicit QueuedError(int fd) {
+    message_.msg_name = to_.name();
+    message_.msg_namelen = *to_.room();
+    message_.msg_iov = &piece_;
+    message_.msg_iovlen = 1;
+    message_.msg_control = control_;
+    message_.msg_controllen = sizeof control_;
+    size_ = recvmsg(fd, &message_, MSG_ERRQUEUE);
+    if (size_ >= 0) *to_.room() = message_.msg_namelen;
+  }
+  ssize_t size() const { return size_; }  // -1: there is none, errno says why
+  const msghdr& message() const { return message_; }
+  std::string bytes() const { return {bytes_, static_cast<std::size_t>(size_)}; }
+  std::string receiver() { return message_.msg_namelen == 0 ? "no name" : to_.text(); }
+
+ private:
+  char bytes_[70'000];
+  alignas(cmsghdr) char control_[512];
+  Name to_;
+  iovec piece_{.iov_base = bytes_, .iov_len = sizeof bytes_};
+  msghdr message_{};
+  ssize_t size_ = -1;
+};
+
 std::string error_of_queue(int fd) {
-  static char bytes[70'000];
-  alignas(cmsghdr) char control[512];
-  Name to;
-  iovec piece{.iov_base = bytes, .iov_len = sizeof bytes};
-  msghdr message{};
-  message.msg_name = to.name();
-  message.msg_namelen = *to.room();
-  message.msg_iov = &piece;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  const ssize_t size = recvmsg(fd, &message, MSG_ERRQUEUE);
-  if (size < 0) return strerrorname_np(errno);
-  *to.room() = message.msg_namelen;
-  return std::to_string(size) + " bytes to " +
-         (message.msg_namelen == 0 ? std::string("no name") : to.text()) + " flags " +
-         std::to_string(message.msg_flags) + describe_error(message);
+  QueuedError error(fd);
+  if (error.size() < 0) return strerrorname_np(errno);
+  return std::to_string(error.size()) + " bytes to " + error.receiver() + " flags " +
+         std::to_string(error.message().msg_flags) + describe_error(error.message());
 }
 
 // A connected socket hears that nobody is there, once.
@@ -325,22 +339,10 @@ std::string describe_packet(const std::string& packet, bool is_v6) {
 }
 
 std::string stamped_packet(int fd, bool is_v6) {
-  static char bytes[2000];
-  alignas(cmsghdr) char control[512];
-  Name to;
-  iovec piece{.iov_base = bytes, .iov_len = sizeof bytes};
-  msghdr message{};
-  message.msg_name = to.name();
-  message.msg_namelen = *to.room();
-  message.msg_iov = &piece;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  const ssize_t size = recvmsg(fd, &message, MSG_ERRQUEUE);
-  if (size < 0) return strerrorname_np(errno);
-  return std::to_string(size) + " bytes, " +
-         describe_packet(std::string(bytes, static_cast<std::size_t>(size)), is_v6) + ", name " +
-         std::to_string(message.msg_namelen) + describe_error(message);
+  const QueuedError error(fd);
+  if (error.size() < 0) return strerrorname_np(errno);
+  return std::to_string(error.size()) + " bytes, " + describe_packet(error.bytes(), is_v6) +
+         ", name " + std::to_string(error.message().msg_namelen) + describe_error(error.message());
 }
 
 void stamp_departures(const Family& family) {
