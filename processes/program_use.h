@@ -57,7 +57,7 @@ class ProgramUse {
 
   // What has passed a limit, as the end of a sentence; empty: nothing.
   std::string excess();
-  // The same of one that the kernel has killed; empty: not for a limit.
+  // The limit for which the kernel has killed it; empty: it was not for a limit.
   std::string excess_of_killed() const;
 
  private:

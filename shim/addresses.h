@@ -90,7 +90,7 @@ constexpr bool is_link_local(const IpAddress& address) {
   return address.bytes[0] == 0xFE && (address.bytes[1] & 0xC0) == 0x80;
 }
 
-// Those of which each interface has its own: link-local ones, and groups of a link or a host.
+// Addresses that each interface has of its own: link-local ones, and groups of a link or a host.
 constexpr bool needs_scope(const IpAddress& address) {
   const int scope = address.bytes[0] == 0xFF ? address.bytes[1] & 0x0F : 0;
   return is_link_local(address) || scope == 1 || scope == 2;

@@ -114,7 +114,7 @@ void store(sockaddr& place, const Address& address) {
   memcpy(&place, &address, sizeof address);
 }
 
-// Those that have an address.
+// The interfaces that have an address.
 int list_interfaces(ifconf& list) {
   const int room = list.ifc_buf == nullptr ? kMostInterfaces : list.ifc_len / int{sizeof(ifreq)};
   int count = 0;

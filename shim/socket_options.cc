@@ -138,7 +138,7 @@ int set_linger(const void* value, socklen_t size, linger& kept) {
   return 0;
 }
 
-// Those of the level SOL_SOCKET that are not of the table; kIsNone for others.
+// Options of the level SOL_SOCKET that are not of the table; kIsNone for others.
 int set_socket_option(int fd, int option, const void* value, socklen_t size) {
   SocketState& state = state_of(fd);
   switch (option) {
@@ -304,7 +304,7 @@ int give(const void* found, std::size_t found_size, void* value, socklen_t* size
   return 0;
 }
 
-// Those that are no numbers; kIsNone for others.
+// Options that are no numbers; kIsNone for others.
 int get_special(int fd, int level, int option, void* value, socklen_t* size) {
   const SocketState& state = state_of(fd);
   if (level == SOL_SOCKET) {

@@ -72,7 +72,7 @@ class Program {
   void stop();
   // Why it ended by itself, one line; empty while it runs, and once it is stopped.
   const std::string& ending() const { return ending_; }
-  // The same in its parts.
+  // That ending in its parts.
   const processes::ProgramEnd& end() const { return end_; }
 
  private:
@@ -104,7 +104,7 @@ class Program {
   Answer requeue(const ProgramThread& waker, const ChildRequest& request);
   // All of a process, or all of the others that share the lock.
   void wake_locks(const Process& process);
-  // Those that wait for the lock, the one that came first at the beginning.
+  // The threads that wait for the lock, the one that came first at the beginning.
   std::vector<ProgramThread*> waiting_for(const Process& process, const shim::Lock& lock);
 
   Surroundings around_;

@@ -140,7 +140,7 @@ int take_error(UdpSocket& socket) { return std::exchange(socket.error, 0); }
 
 namespace {
 
-// Those of which IPv4 and IPv6 have one each; false for others.
+// Options of which IPv4 and IPv6 have one each; false for others.
 bool set_ip_option(IpOptions& options, shim::SocketOption option, std::int64_t value) {
   switch (option) {
     case shim::SocketOption::kAllGroups:
