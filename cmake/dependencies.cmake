@@ -3,12 +3,23 @@
 # Packages that cannot be installed beside a user's own lie unpacked under SIMBENCH_DEPS_DIR.
 set(SIMBENCH_DEPS_DIR ${PROJECT_SOURCE_DIR}/build/deps CACHE PATH "Privately unpacked packages")
 list(APPEND CMAKE_PREFIX_PATH ${SIMBENCH_DEPS_DIR}/usr)
+if(SIMBENCH_PORTABLE)
+  set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
+endif()
 
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
-find_package(fmt 9 REQUIRED)
+if(SIMBENCH_PORTABLE)
+  # Debian has fmt as a shared library alone.
+  find_path(SIMBENCH_FMT_INCLUDE_DIR fmt/core.h REQUIRED NO_CACHE)
+  add_library(fmt::fmt INTERFACE IMPORTED GLOBAL)
+  target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY=1)
+  target_include_directories(fmt::fmt INTERFACE ${SIMBENCH_FMT_INCLUDE_DIR})
+else()
+  find_package(fmt 9 REQUIRED)
+endif()
 
 # Boost 1.81: Asio coroutines, Random (same numbers with every compiler), Math. Headers only.
 include(${CMAKE_CURRENT_LIST_DIR}/find_boost_headers.cmake)

@@ -38,7 +38,7 @@ function(simbench_folder_library name)
   endif()
   simbench_static_library(${name} ${flags} LINK ${arg_LINK} SOURCES ${sources})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
-          FILES_MATCHING PATTERN "*.h")
+          COMPONENT development FILES_MATCHING PATTERN "*.h")
 endfunction()
 
 # The library simbench_NAME of these SOURCES; the rest is as above.
@@ -65,5 +65,5 @@ function(simbench_static_library name)
     set(unit_files UNIT_FILES ${arg_UNIT_FILES})
   endif()
   simbench_fast_build(simbench_${name} ${unit_files} PRECOMPILE ${arg_PRECOMPILE} OPTIONS ${options})
-  install(TARGETS simbench_${name} EXPORT simbench)
+  install(TARGETS simbench_${name} EXPORT simbench COMPONENT development)
 endfunction()

@@ -1,0 +1,26 @@
+# What tools/release builds runs on machines that have none of simbench's libraries and an older glibc.
+#
+# SIMBENCH_PORTABLE: the program is linked statically, with its glibc. The library that is preloaded
+# into other programs and the Python module meet the glibc of their process: they are linked with an
+# old one, unpacked at SIMBENCH_OLD_GLIBC, whose symbols every later glibc has.
+option(SIMBENCH_PORTABLE "Link as tools/release does, for machines of others" OFF)
+set(SIMBENCH_OLD_GLIBC "" CACHE PATH "Root of an unpacked older glibc (libc6, libc6-dev)")
+
+# simbench_portable_program(TARGET)
+function(simbench_portable_program target)
+  if(SIMBENCH_PORTABLE)
+    # PIE: at an address that differs each time, as other programs.
+    target_link_options(${target} PRIVATE -static-pie)
+  endif()
+endfunction()
+
+# simbench_old_glibc(TARGET): links a library with it, in place of the compiler's own.
+function(simbench_old_glibc target)
+  set(libraries ${SIMBENCH_OLD_GLIBC}/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+  file(GLOB loader ${libraries}/ld-linux-*.so.*)
+  target_link_options(${target} PRIVATE -nodefaultlibs -Wl,--as-needed)
+  target_link_libraries(${target} PRIVATE
+    ${libraries}/libc.so.6 ${libraries}/libpthread.so.0 ${libraries}/libdl.so.2
+    ${libraries}/libm.so.6 ${loader}
+    ${SIMBENCH_OLD_GLIBC}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/libc_nonshared.a)
+endfunction()
