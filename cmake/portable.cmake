@@ -6,6 +6,10 @@
 option(SIMBENCH_PORTABLE "Link as tools/release does, for machines of others" OFF)
 set(SIMBENCH_OLD_GLIBC "" CACHE PATH "Root of an unpacked older glibc (libc6, libc6-dev)")
 
+if(SIMBENCH_PORTABLE)
+  target_compile_definitions(simbench_flags INTERFACE $<BUILD_INTERFACE:SIMBENCH_PORTABLE>)
+endif()
+
 # simbench_portable_program(TARGET)
 function(simbench_portable_program target)
   if(SIMBENCH_PORTABLE)

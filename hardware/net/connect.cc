@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "hardware/net/names.h"
 #include "hardware/net/notice.h"
 #include "hardware/net/secure_stream.h"
 
@@ -18,12 +21,12 @@ using Kind = StreamError::Kind;
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
+constexpr Nanoseconds kPatience = std::chrono::seconds(60);  // of resolved_now()
+
 // The state of an attempt, shared with its handlers, which may outlive it.
 struct Attempt {
   explicit Attempt(const boost::asio::any_io_executor& executor)
-      : resolver(executor), socket(executor), done(executor) {}
-  tcp::resolver resolver;
-  std::vector<tcp::endpoint> endpoints;
+      : socket(executor), done(executor) {}
   tcp::socket socket;
   std::optional<error_code> result;
   Notice done;
@@ -42,7 +45,6 @@ struct Ending {
   ~Ending() {
     if (attempt->result) return;
     error_code ignored;
-    attempt->resolver.cancel();
     attempt->socket.close(ignored);
   }
 };
@@ -67,22 +69,6 @@ std::string error_text(const error_code& error) {
       fmt::format("{}: no connection: {}", address_text(address, port), error_text(error)));
 }
 
-Task<std::vector<tcp::endpoint>> resolve(Shared attempt, std::string address, std::uint16_t port,
-                                         MonotonicTime deadline) {
-  error_code no_number;
-  const auto number = boost::asio::ip::make_address(address, no_number);
-  if (!no_number) co_return std::vector{tcp::endpoint(number, port)};
-  attempt->resolver.async_resolve(
-      address, std::to_string(port),
-      [attempt](const error_code& error, const tcp::resolver::results_type& results) {
-        for (const auto& entry : results) attempt->endpoints.push_back(entry.endpoint());
-        attempt->finish(error);
-      });
-  const error_code error = co_await finished_attempt(attempt, deadline);
-  if (error) unreachable(address, port, error);
-  co_return attempt->endpoints;
-}
-
 }  // namespace
 
 std::string address_text(const std::string& address, std::uint16_t port) {
@@ -92,12 +78,11 @@ std::string address_text(const std::string& address, std::uint16_t port) {
 
 Task<tcp::socket> connect_socket(boost::asio::any_io_executor executor, std::string address,
                                  std::uint16_t port, MonotonicTime deadline) {
-  const auto names = std::make_shared<Attempt>(executor);
-  const std::vector<tcp::endpoint> endpoints = co_await resolve(names, address, port, deadline);
+  const auto addresses = co_await addresses_of(executor, address, deadline);
   error_code error = boost::asio::error::host_not_found;
-  for (const tcp::endpoint& endpoint : endpoints) {
+  for (const auto& each : addresses) {
     const auto attempt = std::make_shared<Attempt>(executor);
-    attempt->socket.async_connect(endpoint,
+    attempt->socket.async_connect(tcp::endpoint(each, port),
                                   [attempt](const error_code& result) { attempt->finish(result); });
     error = co_await finished_attempt(attempt, deadline);
     if (!error) co_return std::move(attempt->socket);
@@ -106,17 +91,19 @@ Task<tcp::socket> connect_socket(boost::asio::any_io_executor executor, std::str
 }
 
 boost::asio::ip::address resolved_now(const std::string& address) {
-  error_code error;
-  auto number = boost::asio::ip::make_address(address, error);
-  if (!error) return number;
   boost::asio::io_context context;
-  tcp::resolver resolver(context);
-  const auto results = resolver.resolve(address, "", error);
-  if (error || results.empty()) {
-    throw StreamError(Kind::kUnreachable,
-                      fmt::format("{}: found no such name: {}", address, error.message()));
-  }
-  return results.begin()->endpoint().address();
+  boost::asio::ip::address first;
+  std::exception_ptr error;
+  boost::asio::co_spawn(context,
+                        addresses_of(context.get_executor(), address, monotonic_now() + kPatience),
+                        [&](const std::exception_ptr& thrown,
+                            const std::vector<boost::asio::ip::address>& addresses) {
+                          error = thrown;
+                          if (!thrown) first = addresses.front();
+                        });
+  context.run();
+  if (error) std::rethrow_exception(error);
+  return first;
 }
 
 }  // namespace simbench::hardware
