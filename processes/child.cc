@@ -76,6 +76,17 @@ void limit(__rlimit_resource resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
+// A kernel before 5.11 does it for one at a time.
+void close_at_exec() {
+  constexpr int kFirst = 3;
+  if (syscall(SYS_close_range, kFirst, ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
+  rlimit own{};
+  if (getrlimit(RLIMIT_NOFILE, &own) != 0) _exit(kCannotRun);
+  for (int each = kFirst; static_cast<rlim_t>(each) < own.rlim_cur; ++each) {
+    fcntl(each, F_SETFD, FD_CLOEXEC);
+  }
+}
+
 // Neither signals nor descriptors of the parent's are inherited.
 void forget_parent() {
   sigset_t none;
@@ -83,7 +94,7 @@ void forget_parent() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
   for (int each = 1; each < NSIG; ++each) signal(each, SIG_DFL);
   umask(S_IWGRP | S_IWOTH);
-  syscall(SYS_close_range, 3, ~0U, CLOSE_RANGE_CLOEXEC);
+  close_at_exec();
 }
 
 void set_limits(rlim_t cpu_s) {

@@ -101,6 +101,15 @@ int landlock_rules(const Confinement::Settings& settings) {
                                      settings.folder, std::strerror(error)));
 }
 
+// Asked before a run, of which every program would end.
+void require_filters() {
+  const std::uint32_t action = SECCOMP_RET_TRAP;
+  if (syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) == 0) return;
+  throw ConfinementError(
+      "this kernel has no seccomp filters (Linux has them from 4.14 on, emulators of processors do "
+      "not), without which simbench runs no real programs; its own algorithms need none");
+}
+
 // What fails here fails for who has no rights to lose.
 void keep_from_gaining() {
   for (unsigned long each = 0; prctl(PR_CAPBSET_READ, each, 0, 0, 0) >= 0; ++each) {
@@ -135,7 +144,9 @@ void allow_own_process_files(int rules) {
 Confinement::Confinement(const Settings& settings)
     : rules_(landlock_rules(settings)),
       as_nobody_(settings.as_nobody),
-      filter_(call_filter(settings.served)) {}
+      filter_(call_filter(settings.served)) {
+  require_filters();
+}
 
 Confinement::~Confinement() {
   if (rules_ >= 0) close(rules_);

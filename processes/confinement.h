@@ -17,7 +17,8 @@
 // (Served::kClock); what network that is, its caller chooses by a namespace. It still sets no
 // clock.
 //
-// Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError.
+// Without filters of calls (before Linux 4.14; under an emulator of a processor) nobody runs
+// programs: ConfinementError. Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError.
 // For other users the barrier of files is then their ordinary rights, and no more.
 //
 // What remains: that a file or folder is there, its size, its times and where a link leads can be

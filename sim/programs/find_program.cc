@@ -81,9 +81,9 @@ std::string library_path(const std::string& root) {
                     kProgramsVariable));
   }
   throw ProgramError(
-      fmt::format("{} is not there; it is in the Debian package {}, which tools/setup "
-                  "--with-programs unpacks for simbench alone",
-                  name, known->second));
+      fmt::format("{} is not there; it is in the Debian package {} (apt install {}; in a clone of "
+                  "simbench, tools/setup --with-programs unpacks it for simbench alone)",
+                  name, known->second, known->second));
 }
 
 }  // namespace

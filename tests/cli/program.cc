@@ -39,11 +39,20 @@ void redirect(const fs::path& path, int descriptor) {
     const rlimit limit = {*options.largest_file, *options.largest_file};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  std::string program = SIMBENCH_PROGRAM;
+  if (!options.kernel_without.empty()) {
+    arguments.front() = program;
+    program = fs::path(SIMBENCH_PROGRAM).replace_filename("simbench_older_kernel");
+    std::vector<std::string> before = {program};
+    before.insert(before.end(), options.kernel_without.begin(), options.kernel_without.end());
+    before.emplace_back("--");
+    arguments.insert(arguments.begin(), before.begin(), before.end());
+  }
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  execv(SIMBENCH_PROGRAM, argv.data());
+  execv(program.c_str(), argv.data());
   _exit(127);
 }
 

@@ -34,6 +34,8 @@ struct ProgramOptions {
   std::vector<std::string> environment = {};
   // Where standard output goes instead of ProgramResult::out.
   std::string out_file = {};
+  // What the kernel lacks: words of tests/programs/older_kernel.cc.
+  std::vector<std::string> kernel_without = {};
   // Nothing is open as standard output.
   bool closed_out = false;
 };

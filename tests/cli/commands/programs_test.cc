@@ -398,6 +398,25 @@ TEST_F(ProgramsCommand, NoProgramOutlivesAKill) {
   EXPECT_TRUE(all_programs_end(folder()));
 }
 
+// Programs are refused with a reason, and all else works.
+TEST_F(ProgramsCommand, OlderKernelsRunWhatTheyCan) {
+  write("one.json", {{"master", Json::array({Json::array({"/bin/true"})})},
+                     {"slave", Json::array({Json::array({"/bin/true"})})}});
+  const auto said = [this](const std::vector<std::string>& lacking) {
+    const ProgramResult result =
+        run({"clocks", "--scenario", "6host_star", "--seeds", "1", "--duration-s", "10", "--from-s",
+             "0", "--pipelines", "free_running", "--program", "one=one.json"},
+            {.kernel_without = lacking});
+    EXPECT_THAT(result.out, HasSubstr("\nfree_running "));
+    return result.out + result.err;
+  };
+  EXPECT_THAT(said({"seccomp"}), HasSubstr("this kernel has no seccomp filters"));
+  const std::string without_landlock = said({"landlock"});
+  const std::string refusal = "this kernel has no Landlock, without which root's programs";
+  EXPECT_THAT(without_landlock, geteuid() == 0 ? HasSubstr(refusal) : Not(HasSubstr(refusal)));
+  EXPECT_THAT(said({"close_range"}), Not(HasSubstr("this kernel")));
+}
+
 TEST_F(ProgramsCommand, FilesThatAreNoPipelines) {
   const auto refusal = [this](const std::string& text) {
     file("bad.json", text);

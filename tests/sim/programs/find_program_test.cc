@@ -85,8 +85,8 @@ TEST_F(FindProgramTest, AMissingProgramNamesItsPackage) {
             "SIMBENCH_PROGRAMS");
   if (refusal("ptp4l") == "none") GTEST_SKIP() << "ptp4l is installed";
   EXPECT_EQ(refusal("ptp4l"),
-            "ptp4l is not there; it is in the Debian package linuxptp, which tools/setup "
-            "--with-programs unpacks for simbench alone");
+            "ptp4l is not there; it is in the Debian package linuxptp (apt install linuxptp; in a "
+            "clone of simbench, tools/setup --with-programs unpacks it for simbench alone)");
 }
 
 TEST_F(FindProgramTest, WhatIsFoundIsLookedAt) {
