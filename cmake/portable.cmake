@@ -8,6 +8,9 @@ set(SIMBENCH_OLD_GLIBC "" CACHE PATH "Root of an unpacked older glibc (libc6, li
 
 if(SIMBENCH_PORTABLE)
   target_compile_definitions(simbench_flags INTERFACE $<BUILD_INTERFACE:SIMBENCH_PORTABLE>)
+  # Nothing says where it was built.
+  add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
+  set(CMAKE_SKIP_RPATH ON)
 endif()
 
 # simbench_portable_program(TARGET)
