@@ -21,7 +21,7 @@ using Kind = StreamError::Kind;
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr Nanoseconds kPatience = std::chrono::seconds(60);  // of resolved_now()
+constexpr Nanoseconds kNamePatience = std::chrono::seconds(60);  // of resolved_now()
 
 // The state of an attempt, shared with its handlers, which may outlive it.
 struct Attempt {
@@ -94,13 +94,13 @@ boost::asio::ip::address resolved_now(const std::string& address) {
   boost::asio::io_context context;
   boost::asio::ip::address first;
   std::exception_ptr error;
-  boost::asio::co_spawn(context,
-                        addresses_of(context.get_executor(), address, monotonic_now() + kPatience),
-                        [&](const std::exception_ptr& thrown,
-                            const std::vector<boost::asio::ip::address>& addresses) {
-                          error = thrown;
-                          if (!thrown) first = addresses.front();
-                        });
+  boost::asio::co_spawn(
+      context, addresses_of(context.get_executor(), address, monotonic_now() + kNamePatience),
+      [&](const std::exception_ptr& thrown,
+          const std::vector<boost::asio::ip::address>& addresses) {
+        error = thrown;
+        if (!thrown) first = addresses.front();
+      });
   context.run();
   if (error) std::rethrow_exception(error);
   return first;

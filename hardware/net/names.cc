@@ -46,7 +46,7 @@ struct Search {
 };
 
 // False at the deadline.
-Task<bool> finished(std::shared_ptr<Search> search, MonotonicTime deadline) {
+Task<bool> search_ends(std::shared_ptr<Search> search, MonotonicTime deadline) {
   while (!search->result) {
     const bool in_time = co_await search->done.wait(deadline);
     if (!in_time && !search->result) co_return false;
@@ -142,7 +142,7 @@ Task<std::vector<address>> addresses_by_libc(boost::asio::any_io_executor execut
         }
         search->finish(error);
       });
-  const bool in_time = co_await finished(search, deadline);
+  const bool in_time = co_await search_ends(search, deadline);
   if (!in_time) not_found(name, "found no answer in time");
   if (*search->result) not_found(name, "found no such name: " + search->result->message());
   co_return search->addresses;
@@ -171,7 +171,7 @@ Task<std::vector<address>> addresses_by_getent(boost::asio::any_io_executor exec
   const auto search = std::make_shared<Getent>(executor, name);
   const GetentEnding ending{search};
   Getent::read(search);
-  const bool in_time = co_await finished(search, deadline);
+  const bool in_time = co_await search_ends(search, deadline);
   if (!in_time) not_found(name, "found no answer in time");
   std::vector<address> addresses = addresses_in(search->text());
   if (addresses.empty()) not_found(name, kNoName);

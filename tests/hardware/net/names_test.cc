@@ -25,9 +25,9 @@ std::vector<address> found(Task<std::vector<address>> (*search)(boost::asio::any
   return Running<std::vector<address>>(context, search(context.get_executor(), name, soon())).get();
 }
 
-std::string error_of(Task<std::vector<address>> (*search)(boost::asio::any_io_executor, std::string,
-                                                          MonotonicTime),
-                     const std::string& name) {
+std::string name_error(Task<std::vector<address>> (*search)(boost::asio::any_io_executor,
+                                                            std::string, MonotonicTime),
+                       const std::string& name) {
   try {
     found(search, name);
   } catch (const StreamError& error) {
@@ -50,7 +50,7 @@ TEST(NamesTest, GetentFindsWhatLibcFinds) {
     const auto addresses = found(search, "localhost");
     EXPECT_TRUE(
         std::ranges::any_of(addresses, [](const auto& each) { return each.is_loopback(); }));
-    EXPECT_THAT(error_of(search, "no-such-host.invalid"),
+    EXPECT_THAT(name_error(search, "no-such-host.invalid"),
                 HasSubstr("no-such-host.invalid: found no such name"));
   }
 }
@@ -61,14 +61,14 @@ TEST(NamesTest, NumbersAreThemselves) {
 }
 
 TEST(NamesTest, NoNameIsAnOptionOfGetent) {
-  EXPECT_EQ(error_of(&addresses_by_getent, "--help"), "--help: found no such name");
-  EXPECT_EQ(error_of(&addresses_by_getent, ""), ": found no such name");
+  EXPECT_EQ(name_error(&addresses_by_getent, "--help"), "--help: found no such name");
+  EXPECT_EQ(name_error(&addresses_by_getent, ""), ": found no such name");
 }
 
 TEST(NamesTest, WithoutGetentTheMessageSaysWhatWouldWork) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", "/nowhere", 1);
-  const std::string error = error_of(&addresses_by_getent, "pi.local");
+  const std::string error = name_error(&addresses_by_getent, "pi.local");
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(error, "pi.local: found no program getent, which finds names; write its address");
 }
