@@ -18,8 +18,9 @@
 // clock.
 //
 // Without filters of calls (before Linux 4.14; under an emulator of a processor) nobody runs
-// programs: ConfinementError. Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError.
-// For other users the barrier of files is then their ordinary rights, and no more.
+// programs: ConfinementError. Without Landlock (before Linux 5.13, or switched off) root runs no
+// programs: ConfinementError. For other users the barrier of files is then their ordinary rights,
+// and no more.
 //
 // What remains: that a file or folder is there, its size, its times and where a link leads can be
 // seen of all that the user may enter. Unix-domain sockets that others have put into the file
