@@ -4,7 +4,8 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/simbench)
 
 install(TARGETS simbench RUNTIME)
-install(TARGETS simbench_flags simbench_boost simbench_sodium simbench_file_libraries EXPORT simbench)
+install(TARGETS simbench_flags simbench_elementary simbench_boost simbench_sodium
+  simbench_file_libraries EXPORT simbench)
 install(EXPORT simbench NAMESPACE simbench:: FILE simbench-targets.cmake DESTINATION ${package_dir})
 install(DIRECTORY scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/simbench/scenarios
         FILES_MATCHING PATTERN "*.json")
