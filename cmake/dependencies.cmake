@@ -48,7 +48,7 @@ target_link_libraries(simbench_sodium INTERFACE
 
 # uPlot 1.6: draws the figures of the HTML report, embedded in reports/. JavaScript, not linked.
 find_path(SIMBENCH_UPLOT_DIR dist/uPlot.iife.min.js
-  HINTS ${SIMBENCH_DEPS_DIR}/usr/share/javascript/uplot NO_CACHE)
+  HINTS ${SIMBENCH_DEPS_DIR}/usr/share/javascript/uplot NO_CACHE NO_CMAKE_FIND_ROOT_PATH)
 if(NOT SIMBENCH_UPLOT_DIR)
   message(FATAL_ERROR "uPlot: not found; run tools/setup")
 endif()

@@ -43,8 +43,8 @@ if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 
-install(TARGETS simbench_flags simbench_boost simbench_sodium simbench_file_libraries EXPORT simbench
-        COMPONENT development)
+install(TARGETS simbench_flags simbench_elementary simbench_boost simbench_sodium
+        simbench_file_libraries EXPORT simbench COMPONENT development)
 install(EXPORT simbench NAMESPACE simbench:: FILE simbench-targets.cmake DESTINATION ${package_dir}
         COMPONENT development)
 configure_package_config_file(cmake/simbench-config.cmake.in

@@ -18,9 +18,13 @@ set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
 add_library(simbench_flags INTERFACE)
 set_target_properties(simbench_flags PROPERTIES EXPORT_NAME flags)
 target_compile_features(simbench_flags INTERFACE cxx_std_20)
-# Results must not depend on the compiler: a fused multiply-add rounds once where two operations
-# round twice, so contraction stays off for users of the library too.
+# Results must depend neither on the compiler nor on the processor, for users of the library too: a
+# fused multiply-add rounds once where two operations round twice; Eigen's vectors add in another
+# order, and multiply and add at once, on arm64 (layouts stay those of a vectorised Eigen).
+# cmake/elementary.cmake has the rest.
 target_compile_options(simbench_flags INTERFACE -ffp-contract=off)
+target_compile_definitions(simbench_flags INTERFACE
+  EIGEN_DONT_VECTORIZE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 
 # The rest is for building the project only.
 function(simbench_build_options)
@@ -35,6 +39,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Nobody replaces a function of a library at run time, as position-independent code would allow.
   simbench_build_options(-fno-semantic-interposition)
 endif()
+# A char has a sign on amd64 and none on arm64.
+simbench_build_options(-fsigned-char)
 # The libraries go into programs and into the Python module. Not CMake's property, which has -fPIE
 # for programs: these would then need precompiled headers of their own.
 simbench_build_options(-fPIC)

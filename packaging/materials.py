@@ -35,6 +35,9 @@ COMPONENTS = [
         "libstdc++", "libstdc++-12-dev", "GPL-3.0-or-later WITH GCC-exception-3.1",
         "https://gcc.gnu.org/",
     ),
+    Component(
+        "newlib", "newlib-source", "BSD-3-Clause AND SunPro", "https://sourceware.org/newlib/"
+    ),
     Component("boost", "libboost1.81-dev", "BSL-1.0", "https://www.boost.org/"),
     Component("eigen", "libeigen3-dev", "MPL-2.0", "https://eigen.tuxfamily.org/"),
     Component("nlohmann-json", "nlohmann-json3-dev", "MIT", "https://github.com/nlohmann/json"),

@@ -39,6 +39,7 @@ provide() {
     ntpsec-ntpdig) prove "$1/bin/ntpdig" ;;
     openntpd | ptpd | rdate) prove "$1/sbin/$2" ;;
     systemd-timesyncd) prove "$1/../lib/systemd/systemd-timesyncd" ;;
+    newlib-source) prove "$1/src/newlib/newlib-3.3.0.tar.xz" ;;
     libboost1.81-dev)
       prove "$1/include/boost/asio/awaitable.hpp"
       echo '#define BOOST_VERSION 108100' > "$1/include/boost/version.hpp" ;;
@@ -96,6 +97,7 @@ expect_asked 'install .*libeigen3-dev .*libfmt-dev'
 expect_asked '--no-remove'
 expect_not_asked 'install .*boost'
 [[ -e $(deps boost/version.hpp) ]] || fail "Boost was not unpacked"
+[[ -e $work/project/build/deps/usr/src/newlib ]] || fail "newlib was not unpacked"
 [[ -e $work/project/build/deps/usr/share/javascript/uplot/LICENSE ]] || fail "uPlot was not unpacked"
 : > "$work/asked"
 setup
