@@ -38,16 +38,15 @@ setting() { [ -n "$2" ] || fail "$1 is not set; the head of $0 says what it is";
 # get NAME FILE: copies or downloads a file of the release.
 get() {
   case $releases in
-    *://*)
-      command -v curl > /dev/null || fail "$releases is a URL, but curl is not installed"
-      set -- "$2" "$releases/$1" -fsSL --retry 3 --connect-timeout 30
-      if [ -n "${SIMBENCH_HEADER:-}" ]; then
-        printf '%s\n' "$SIMBENCH_HEADER" | curl -H @- -o "$@" 2> "$fetched/why"
-      else
-        curl -o "$@" 2> "$fetched/why"
-      fi ;;
-    *) cp -- "$releases/$1" "$2" 2> "$fetched/why" ;;
-  esac || fail "cannot get $1 of simbench $version from $releases: $(tail -n 1 "$fetched/why")"
+    *://*) download "$releases/$1" "$2" ;;
+    *) cp -- "$releases/$1" "$2" ;;
+  esac 2> "$fetched/why" ||
+    fail "cannot get $1 of simbench $version from $releases: $(tail -n 1 "$fetched/why")"
+}
+download() {
+  set -- -fsSL --retry 3 --connect-timeout 30 -o "$2" "$1"
+  [ -n "${SIMBENCH_HEADER:-}" ] || { curl "$@"; return; }
+  printf '%s\n' "$SIMBENCH_HEADER" | curl -H @- "$@"
 }
 
 # listed: checksum and name of the file of this version, machine and kind; nothing if there is none.
@@ -65,15 +64,16 @@ fetch() {
   [ ! -d "$home" ] || return 0
   mkdir -p "$cache"
   fetched=$(mktemp -d "$cache/fetched.XXXXXX")
-  trap 'rm -rf "$fetched"' EXIT
+  # Nothing stays of what failed: a service would keep an empty cache for good.
+  trap 'rm -rf "$fetched"; rmdir "$cache" 2> /dev/null || true' EXIT
   sums=${SIMBENCH_SUMS:-}
   if [ -z "$sums" ]; then
     sums=$fetched/SHA256SUMS
     get SHA256SUMS "$sums"
   fi
   line=$(listed)
-  [ -n "$line" ] || fail "no $kind of simbench $version for $machine in ${SIMBENCH_SUMS:-$releases};" \
-    "there are: $(awk '{ sub(/^\*/, "", $2); printf "%s%s", separator, $2; separator = ", " }' "$sums")"
+  [ -n "$line" ] || fail "no simbench $version for $machine ($kind) in ${SIMBENCH_SUMS:-$releases};" \
+    "there are: $(awk '{ sub(/^\*/, "", $2); printf "%s%s", comma, $2; comma = ", " }' "$sums")"
   file=${line#* } expected=${line%% *}
   say "getting $file from $releases"
   get "$file" "$fetched/$file"
@@ -183,8 +183,8 @@ else
   for argument; do
     case $argument in --python | --python=*) kind=python ;; esac
   done
-  mkdir -p "${SIMBENCH_CACHE:-.simbench}"
-  cache=$(cd "${SIMBENCH_CACHE:-.simbench}" && pwd)
+  cache=${SIMBENCH_CACHE:-.simbench}
+  case $cache in /*) ;; *) cache=$PWD/$cache ;; esac
   home=$cache/simbench-$version-$machine-$kind
   fetch
   simbench=$home/run

@@ -100,13 +100,9 @@ class GitHub(Service):
             pass
         is_bash = job.get("defaults") == {"run": {"shell": "bash"}}
         options = ("--noprofile", "--norc", "-e", "-o", "pipefail") if is_bash else ("-e",)
-        self.at_the_end = []
         for step in job["steps"]:
             if self.is_due(step.get("if", "success()")):
                 self.run_step(step, options, summary)
-        if self.status == 0:
-            for key, path in self.at_the_end:
-                self.keep(key, path)
         with open(summary, encoding="utf-8") as file:
             return Run(self.status, self.log, file.read(), self.artifacts)
 
@@ -115,9 +111,9 @@ class GitHub(Service):
             return True
         if condition == "success()":
             return self.status == 0
-        miss = re.fullmatch(r"steps\.(\w+)\.outputs\.cache-hit != 'true'", condition)
+        miss = re.fullmatch(r"(always\(\) && )?steps\.(\w+)\.outputs\.cache-hit != 'true'", condition)
         assert miss, condition
-        return self.status == 0 and not self.hits[miss[1]]
+        return (self.status == 0 or bool(miss[1])) and not self.hits[miss[2]]
 
     def filled(self, text):
         def value(match):
@@ -143,12 +139,9 @@ class GitHub(Service):
         action, _, version = step["uses"].partition("@")
         assert re.fullmatch(r"v[0-9]+", version), step
         inputs = {name: self.filled(text) for name, text in step.get("with", {}).items()}
-        if action in ("actions/cache", "actions/cache/restore"):
+        if action == "actions/cache/restore":
             known(inputs, "path", "key")
-            hit = self.restore(inputs["key"], inputs["path"])
-            self.hits[step.get("id", action)] = hit
-            if action == "actions/cache" and not hit:
-                self.at_the_end.append((inputs["key"], inputs["path"]))
+            self.hits[step["id"]] = self.restore(inputs["key"], inputs["path"])
         elif action == "actions/cache/save":
             self.keep(known(inputs, "path", "key")["key"], inputs["path"])
         elif action == "actions/upload-artifact":
