@@ -216,6 +216,7 @@ class ShellTest(unittest.TestCase):
         blocks = [[line.strip() for line in block.splitlines()] for block in page.split("\n\n")
                   if block.startswith("    ")]
         (python,) = [lines for lines in blocks if "export SIMBENCH_RELEASES" in lines[0]]
+        (failed,) = [lines for lines in blocks if lines[0].startswith("gate FAILED")]
         (program,) = [lines for lines in blocks if lines[0].startswith("cc ")]
         for name in ("my_algorithm.py", "cristian.c", "cristian_c.json"):
             self.repository.write(name, text_of(SOURCE, "examples", name))
@@ -229,6 +230,11 @@ class ShellTest(unittest.TestCase):
         self.assertEqual(status, 0, out + err)
         self.assertIn("simbench_baselines/18cam_6host_45fps_lan.json",
                       self.repository.shell("git diff --cached --name-only")[1])
+        self.repository.edit("my_algorithm.py", "window=30", "window=1")
+        status, out, err = self.repository.shell("\n".join([settings, python[1]]), check=False)
+        self.assertEqual(status, 3, out + err)
+        for stated in " ".join(failed).split(" ... "):
+            self.assertIn(stated, " ".join(out.split()))
         status, out, err = self.repository.shell("\n".join(program), check=False, **{
             **self.settings, "SIMBENCH_SCENARIOS": "6host_star"})
         self.assertEqual(status, 4, out + err)
