@@ -97,7 +97,7 @@ unpack() {
 exec "$(dirname "$0")/bin/simbench" "$@"
 END
   else
-    python3 -m pip install --quiet --disable-pip-version-check --no-index --no-deps \
+    python3 -m pip --isolated install --quiet --disable-pip-version-check --no-index --no-deps \
       --target "$fetched/unpacked/python" "$1" > "$fetched/why" 2>&1 ||
       fail "python3 cannot install $file: $(tail -n 1 "$fetched/why")"
     # By the job's own interpreter, whose packages an algorithm may need.

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <ostream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct Release {
     return test_data_json("archives/" + version + "/" + name);
   }
 };
+
+void PrintTo(const Release& release, std::ostream* out) { *out << release.version; }
 
 std::vector<Release> releases() {
   std::vector<Release> all;
@@ -119,7 +122,8 @@ TEST_P(Archives, CompareTakesTheirValues) {
   const json compared =
       result_of({"compare", path("run"), "--with-baseline", "oracle", "--format", "json"});
   std::map<std::string, json> rows;
-  for (const json& row : document("run/results.json").at("rows")) rows[row.at("pipeline")] = row;
+  const json results = document("run/results.json");
+  for (const json& row : results.at("rows")) rows[row.at("pipeline")] = row;
   const json pipelines = compared.at("pipelines");
   ASSERT_EQ(pipelines.size(), rows.size() - 1);
   for (const json& pipeline : pipelines) {
@@ -142,11 +146,11 @@ TEST_P(Archives, GateHoldsThemToTheirBaseline) {
   for (const json& check : nonempty(same.at("checks"))) EXPECT_EQ(check.at("outcome"), "same");
   // A result that is worse by a tenth fails against that baseline.
   fs::copy(path("run"), folder() / "worse", fs::copy_options::recursive);
-  json results = document("run/results.json");
-  for (json& value : results.at("rows")[0].at("amd_ms").at("values")) {
+  json worse = document("run/results.json");
+  for (json& value : worse.at("rows")[0].at("amd_ms").at("values")) {
     value = 1.1 * value.get<double>();
   }
-  file("worse/results.json", results.dump(2) + "\n");
+  file("worse/results.json", worse.dump(2) + "\n");
   EXPECT_EQ(run({"gate", "worse", "--baseline", path("baseline.json")}).status, 3);
 }
 
@@ -190,8 +194,11 @@ TEST_P(Archives, InspectAndReplayReadARecording) {
     const json& then = expected.at("rows")[i];
     EXPECT_EQ(row.at("pipeline"), then.at("pipeline"));
     for (const char* metric : {"amd_ms", "absolute_error_ms", "host_error_ms"}) {
-      EXPECT_NEAR(row.at(metric).at("median").get<double>(),
-                  then.at(metric).at("median").get<double>(), 1e-9)
+      const json& value = row.at(metric).at("median");
+      const json& stated = then.at(metric).at("median");
+      ASSERT_EQ(value.is_null(), stated.is_null()) << metric;  // a single host's clocks
+      if (stated.is_null()) continue;
+      EXPECT_NEAR(value.get<double>(), stated.get<double>(), 1e-9)
           << metric << " of " << row.at("pipeline");
     }
   }

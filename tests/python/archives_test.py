@@ -40,7 +40,7 @@ class ArchivesTest(unittest.TestCase):
                 expected = {(pipeline["b"], metric): pipeline[metric]["b"]["median"]
                             for pipeline in document(version, "comparison.json")["pipelines"]
                             for metric in ("amd_ms", "rmdv_ms")}
-                found = {(row["pipeline"], row["metric"]): row["b_median"]
+                found = {(row["pipeline_b"], row["metric"]): row["median_b"]
                          for _, row in compared.table.iterrows()}
                 for key, value in expected.items():
                     self.assertEqual(found[key], value)

@@ -177,7 +177,8 @@ TEST_F(ArchiveReader, WhatSteersTheExposuresIsRead) {
   EXPECT_EQ(archive.results.rows[1].wrong_locks.values, (std::vector<double>{0, 2}));
 }
 
-// As of simbench 0.1: they are as of a row that does not know them, and can be written again.
+// In archives from before the first release: they are as of a row that does not know them, and can
+// be written again.
 TEST_F(ArchiveReader, WithoutTheNewMetricsTheirValuesDoNotExist) {
   auto root = nlohmann::ordered_json::parse(content("results.json"));
   std::vector<const evaluation::Metric*> absent;
