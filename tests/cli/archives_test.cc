@@ -24,7 +24,7 @@ namespace simbench {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -34,7 +34,7 @@ struct Release {
   std::string path(const std::string& name) const {
     return test_data_path("archives/" + version + "/" + name);
   }
-  json document(const std::string& name) const {
+  Json document(const std::string& name) const {
     return test_data_json("archives/" + version + "/" + name);
   }
 };
@@ -53,13 +53,13 @@ std::vector<Release> releases() {
 class Archives : public ProgramTest, public testing::WithParamInterface<Release> {
  protected:
   std::string path(const std::string& name) const { return GetParam().path(name); }
-  json document(const std::string& name) const { return GetParam().document(name); }
+  Json document(const std::string& name) const { return GetParam().document(name); }
 
   // The result of a command, which must end well and print JSON.
-  json result_of(const std::vector<std::string>& arguments) const {
+  Json result_of(const std::vector<std::string>& arguments) const {
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out, nullptr, false);
+    return Json::parse(result.out, nullptr, false);
   }
 
   // A copy of a file or folder, whose file `edited` has `version` and the number of a format that
@@ -68,7 +68,7 @@ class Archives : public ProgramTest, public testing::WithParamInterface<Release>
                     const std::string& format) const {
     const fs::path copy = folder() / name;
     fs::copy(path(name), copy, fs::copy_options::recursive);
-    json root = document(edited);
+    Json root = document(edited);
     root["version"] = "97.0.0";
     root.at(format) = 99;
     file(edited, root.dump(2) + "\n");
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Releases, Archives, testing::ValuesIn(releases()),
                            return name;
                          });
 
-double mean_of(const json& values) {
+double mean_of(const Json& values) {
   const auto all = values.get<std::vector<double>>();
   return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
 }
@@ -93,7 +93,7 @@ TEST_P(Archives, EachStatesWhoWroteItAndItsFormat) {
        {"run/manifest.json", "run/results.json", "clocks/manifest.json", "clocks/results.json",
         "sweep/manifest.json", "sweep/answer.json", "recording/manifest.json", "baseline.json",
         "comparison.json", "replay.json", "fit.json"}) {
-    const json root = document(name);
+    const Json root = document(name);
     EXPECT_EQ(root.at("version"), GetParam().version) << name;
     EXPECT_FALSE(root.at("commit").get<std::string>().empty()) << name;
     EXPECT_GE(root.value("schema_version", root.value("format_version", 0)), 1) << name;
@@ -107,8 +107,8 @@ TEST_P(Archives, ReportShowsTheirValues) {
                                     "--budget-seeds", "0", "--seeds-in-detail", "1"});
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string page = content("page.html");
-  const json rows = document("run/results.json").at("rows");
-  for (const json& row : nonempty(rows)) {
+  const Json rows = document("run/results.json").at("rows");
+  for (const Json& row : nonempty(rows)) {
     for (const char* metric : {"amd_ms", "rmdv_ms"}) {
       const auto median = row.at(metric).at("median").get<double>();
       EXPECT_THAT(page, HasSubstr(reports::metric_text(evaluation::metric(metric), median)))
@@ -119,16 +119,16 @@ TEST_P(Archives, ReportShowsTheirValues) {
 }
 
 TEST_P(Archives, CompareTakesTheirValues) {
-  const json compared =
+  const Json compared =
       result_of({"compare", path("run"), "--with-baseline", "oracle", "--format", "json"});
-  std::map<std::string, json> rows;
-  const json results = document("run/results.json");
-  for (const json& row : results.at("rows")) rows[row.at("pipeline")] = row;
-  const json pipelines = compared.at("pipelines");
+  std::map<std::string, Json> rows;
+  const Json results = document("run/results.json");
+  for (const Json& row : results.at("rows")) rows[row.at("pipeline")] = row;
+  const Json pipelines = compared.at("pipelines");
   ASSERT_EQ(pipelines.size(), rows.size() - 1);
-  for (const json& pipeline : pipelines) {
+  for (const Json& pipeline : pipelines) {
     for (const char* side : {"a", "b"}) {
-      const json& series = rows.at(pipeline.at(side)).at("amd_ms");
+      const Json& series = rows.at(pipeline.at(side)).at("amd_ms");
       EXPECT_EQ(pipeline.at("amd_ms").at(side).at("median"), series.at("median"));
       EXPECT_DOUBLE_EQ(pipeline.at("amd_ms").at(side).at("mean").get<double>(),
                        mean_of(series.at("values")));
@@ -141,13 +141,13 @@ TEST_P(Archives, CompareTakesTheirValues) {
 }
 
 TEST_P(Archives, GateHoldsThemToTheirBaseline) {
-  const json same = result_of({"gate", path("run"), "--baseline", path("baseline.json"), "--json"});
+  const Json same = result_of({"gate", path("run"), "--baseline", path("baseline.json"), "--json"});
   EXPECT_EQ(same.at("passed"), true);
-  for (const json& check : nonempty(same.at("checks"))) EXPECT_EQ(check.at("outcome"), "same");
+  for (const Json& check : nonempty(same.at("checks"))) EXPECT_EQ(check.at("outcome"), "same");
   // A result that is worse by a tenth fails against that baseline.
   fs::copy(path("run"), folder() / "worse", fs::copy_options::recursive);
-  json worse = document("run/results.json");
-  for (json& value : worse.at("rows")[0].at("amd_ms").at("values")) {
+  Json worse = document("run/results.json");
+  for (Json& value : worse.at("rows")[0].at("amd_ms").at("values")) {
     value = 1.1 * value.get<double>();
   }
   file("worse/results.json", worse.dump(2) + "\n");
@@ -155,7 +155,7 @@ TEST_P(Archives, GateHoldsThemToTheirBaseline) {
 }
 
 TEST_P(Archives, StabilityReadsTheClocksOfARun) {
-  const json stable = result_of(
+  const Json stable = result_of(
       {"stability", path("clocks/series.csv"), "--series", "chrony 1", "--format", "json"});
   double largest_s = 0;
   std::size_t lines = 0;
@@ -177,25 +177,25 @@ TEST_P(Archives, StabilityReadsTheClocksOfARun) {
 }
 
 TEST_P(Archives, InspectAndReplayReadARecording) {
-  const json inspected = result_of({"inspect", path("recording"), "--format", "json"});
+  const Json inspected = result_of({"inspect", path("recording"), "--format", "json"});
   const std::string frames = simbench::content(path("recording/raw_arrival/1/frames.csv"));
   const auto lines = std::ranges::count(frames, '\n') - 1;
   std::int64_t counted = 0;
-  for (const json& stream : inspected.at("files")[0].at("streams")) {
+  for (const Json& stream : inspected.at("files")[0].at("streams")) {
     counted += stream.at("frames").get<std::int64_t>();
   }
   EXPECT_EQ(counted, lines);
 
-  const json replayed = result_of({"replay", path("recording"), "--format", "json"});
-  const json expected = document("replay.json");
+  const Json replayed = result_of({"replay", path("recording"), "--format", "json"});
+  const Json expected = document("replay.json");
   ASSERT_EQ(replayed.at("rows").size(), expected.at("rows").size());
   for (std::size_t i = 0; i < expected.at("rows").size(); ++i) {
-    const json& row = replayed.at("rows")[i];
-    const json& then = expected.at("rows")[i];
+    const Json& row = replayed.at("rows")[i];
+    const Json& then = expected.at("rows")[i];
     EXPECT_EQ(row.at("pipeline"), then.at("pipeline"));
     for (const char* metric : {"amd_ms", "absolute_error_ms", "host_error_ms"}) {
-      const json& value = row.at(metric).at("median");
-      const json& stated = then.at(metric).at("median");
+      const Json& value = row.at(metric).at("median");
+      const Json& stated = then.at(metric).at("median");
       ASSERT_EQ(value.is_null(), stated.is_null()) << metric;  // a single host's clocks
       if (stated.is_null()) continue;
       EXPECT_NEAR(value.get<double>(), stated.get<double>(), 1e-9)
@@ -210,7 +210,7 @@ TEST_P(Archives, AFittedModelIsAScenario) {
 
 // A sweep goes on with the program that began it; another one names both and touches nothing.
 TEST_P(Archives, ASweepIsContinuedByItsProgramAlone) {
-  const json manifest = document("sweep/manifest.json");
+  const Json manifest = document("sweep/manifest.json");
   fs::copy(path("sweep"), folder() / "sweep", fs::copy_options::recursive);
   const ProgramResult result =
       run({"sweep", "--scenario", "3cam_1host_30fps", "--set", "/timeline/frames=20", "--set",
