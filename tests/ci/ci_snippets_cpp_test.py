@@ -50,7 +50,6 @@ class Services:
         for script in ("simbench_gate.sh", "simbench_libraries.sh"):
             repository.write(f"ci/{script}", text_of(SNIPPETS, script))
         repository.edit(self.kind.file, self.placeholder, source.folder)
-        repository.edit(self.kind.file, "SIMBENCH_VERSION: 0.1.0", f"SIMBENCH_VERSION: {VERSION}")
         repository.commit("The project and the snippet")
 
         first = service.run(repository.folder)

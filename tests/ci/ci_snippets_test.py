@@ -46,7 +46,6 @@ class Services:
         for name, path in ((self.snippet, self.kind.file), ("simbench_gate.sh", "ci/simbench_gate.sh")):
             self.repository.write(path, text_of(SNIPPETS, name))
         self.set(self.placeholder, self.server.url)
-        self.set("SIMBENCH_VERSION: 0.1.0", f"SIMBENCH_VERSION: {VERSION}")
         self.repository.commit("Nothing but the snippet")
 
     def set(self, old, new):
@@ -149,12 +148,12 @@ class Services:
 
 class GitHubTest(Services, unittest.TestCase):
     kind, snippet = GitHub, "github-actions.yml"
-    placeholder = "https://github.com/OWNER/REPOSITORY/releases/download/v0.1.0"
+    placeholder = f"https://github.com/OWNER/REPOSITORY/releases/download/v{VERSION}"
 
 
 class GitLabTest(Services, unittest.TestCase):
     kind, snippet = GitLab, "gitlab-ci.yml"
-    placeholder = "https://gitlab.com/api/v4/projects/NUMBER/packages/generic/simbench/0.1.0"
+    placeholder = f"https://gitlab.com/api/v4/projects/NUMBER/packages/generic/simbench/{VERSION}"
 
     def test_the_store_learns_who_asks(self):
         self.service.run(self.repository.folder)
@@ -221,8 +220,7 @@ class ShellTest(unittest.TestCase):
         for name in ("my_algorithm.py", "cristian.c", "cristian_c.json"):
             self.repository.write(name, text_of(SOURCE, "examples", name))
         self.repository.write("ci/simbench_gate.sh", text_of(SNIPPETS, "simbench_gate.sh"))
-        settings = python[0].replace("=/srv/simbench", f"={self.release}").replace(
-            "VERSION=0.1.0", f"VERSION={VERSION}")
+        settings = python[0].replace("=/srv/simbench", f"={self.release}")
         status, out, err = self.repository.shell("\n".join([settings, python[1]]), check=False)
         self.assertEqual(status, 4, out + err)
         status, out, err = self.repository.shell("\n".join([settings, *python[2:], python[1]]),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The version of CMakeLists.txt is SemVer and the newest of the changelog; each release has its notes
-and its archives."""
+and its archives; the snippets for CI take the newest."""
 
 import pathlib
 import re
@@ -45,6 +45,14 @@ class VersionsTest(unittest.TestCase):
         for version, text in notes.items():
             self.assertRegex(text, r"(?m)^- ", version)
             self.assertTrue((ROOT / "tests/data/archives" / version / "run/results.json").exists())
+
+    def test_the_snippets_take_the_newest(self):
+        snippets = [*(ROOT / "reports/ci").iterdir(), ROOT / "docs/ci.md"]
+        stated = [version for path in snippets for version in re.findall(
+            r"(?:SIMBENCH_VERSION(?:=|: )|/v|simbench/)([0-9]+\.[0-9.]*[0-9])",
+            path.read_text(encoding="utf-8"))]
+        self.assertGreaterEqual(len(stated), 9)
+        self.assertEqual(set(stated), {self.version})
 
 
 if __name__ == "__main__":
