@@ -18,7 +18,7 @@ std::string_view commit();
 // What reads a file whose format this program is too old for. `writer`: the version that the file
 // states; empty if it states none.
 //
-//   throw InputError("found 2, allowed: at most 1; " + advice_on_newer_format("0.3.0"));
+//   throw std::runtime_error("found 2, allowed: at most 1; " + advice_on_newer_format("0.3.0"));
 std::string advice_on_newer_format(std::string_view writer);
 
 }  // namespace simbench
