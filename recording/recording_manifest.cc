@@ -207,6 +207,18 @@ Json parsed(const std::string& text, const std::string& path) {
   }
 }
 
+void check_format_version(const Value& root) {
+  const Value format = root.at("format_version");
+  const bool is_newer = format.json().is_number_unsigned() &&
+                        format.json().get<std::uint64_t>() > std::uint64_t{kRecordingFormatVersion};
+  if (is_newer) {
+    const std::string writer = root.has("version") ? root.at("version").text() : "";
+    format.fail(
+        fmt::format("at most {}; {}", kRecordingFormatVersion, advice_on_newer_format(writer)));
+  }
+  format.whole(1, kRecordingFormatVersion);
+}
+
 }  // namespace
 
 std::string manifest_text(const RecordingManifest& manifest) {
@@ -277,7 +289,7 @@ RecordingManifest parse_manifest(const std::string& text, const std::string& pat
   if (root.at("format").text() != kRecordingFormat) {
     root.at("format").fail(fmt::format("'{}'", kRecordingFormat));
   }
-  root.at("format_version").whole(kRecordingFormatVersion, kRecordingFormatVersion);
+  check_format_version(root);
   RecordingManifest manifest;
   manifest.description.backend = root.at("backend").text();
   manifest.description.hosts = names_of(root.at("hosts"), kMostHosts);

@@ -21,6 +21,7 @@ Examples:
   simbench run --scenario 18cam_6host_45fps --output results
   simbench gate results --baseline reports/baselines/18cam_6host_45fps.json
   simbench gate results --baseline mine.json --mode statistical --junit gate.xml
+  simbench gate results --baseline mine.json --junit gate.xml --markdown gate.md      in CI
   simbench gate results --save-baseline mine.json     keeps the margins of an earlier file
 
 Exit status: 0 passed, 1 internal error, 2 bad usage or input, 3 gate failed, 4 baseline missing.)";
@@ -32,6 +33,7 @@ struct GateOptions {
   std::string mode = "exact";
   std::string format;
   std::string junit;
+  std::string markdown;
 };
 
 int save_baseline(const GateOptions& options) {
@@ -47,6 +49,7 @@ int save_baseline(const GateOptions& options) {
 std::string report_text(const reports::GateReport& report, const std::string& format) {
   if (format == "json") return reports::gate_json(report);
   if (format == "junit") return reports::gate_junit(report);
+  if (format == "markdown") return reports::gate_markdown(report);
   return reports::gate_text(report);
 }
 
@@ -70,6 +73,9 @@ int gate(const GateOptions& options) {
   if (!options.junit.empty()) {
     reports::write_file(options.junit, reports::gate_junit(report));
   }
+  if (!options.markdown.empty()) {
+    reports::write_file(options.markdown, reports::gate_markdown(report));
+  }
   print_result(report_text(report, options.format));
   return report.passed() ? kOk : kGateFailed;
 }
@@ -89,8 +95,10 @@ void add_gate_command(CommandLine& line) {
                  "Write the result as a baseline; keeps the margins of an earlier one there");
   command.word("--mode", "MODE", options->mode, {"exact", "statistical"},
                "One of: exact, statistical. Default: exact");
-  command.format(options->format, {"text", "json", "junit"});
+  command.format(options->format, {"text", "markdown", "json", "junit"});
   command.output("--junit", "FILE", options->junit, "Write JUnit XML to this file as well");
+  command.output("--markdown", "FILE", options->markdown,
+                 "Write Markdown to this file as well, for a page of the change");
   command.footer(kGateExamples);
   command.runs([options] { return gate(*options); });
 }

@@ -16,6 +16,7 @@
 #include "recording/collected.h"
 #include "recording/counted.h"
 #include "recording/text_fields.h"
+#include "recording/version.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -382,10 +383,11 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
 
 std::string summary_of(const FitModel& model, const RigFit& fit, const FitBase& base) {
   const std::string summary = fmt::format(
-      "A fit of {} to a recording. {}. Not identified: {}. Left out: {}. Contained in the tables, "
-      "and therefore switched off: jitter common to a host, load bursts, noise and steps of the "
-      "stamps{}.",
-      base.scenario.name, fmt::join(model.evidence, "; "), fmt::join(model.not_identified, "; "),
+      "A fit of {} to a recording, by simbench {}. {}. Not identified: {}. Left out: {}. Contained "
+      "in the tables, and therefore switched off: jitter common to a host, load bursts, noise and "
+      "steps of the stamps{}.",
+      base.scenario.name, version(), fmt::join(model.evidence, "; "),
+      fmt::join(model.not_identified, "; "),
       model.left_out.empty() ? "nothing" : fmt::format("{}", fmt::join(model.left_out, "; ")),
       fit.network.latency_quantiles_ms.empty() ? "" : ", what messages cost the hosts");
   return summary.substr(0, kLongestSummary);

@@ -171,7 +171,7 @@ std::optional<evaluation::PublishedComparison> published(const JsonNode& node) {
                                          .rmdv_percentile = percentile(node, "rmdv_percentile")};
 }
 
-// Archives of simbench 0.1 lack these members: all are of simulations.
+// Archives from before the first release lack these members: all are of simulations.
 void read_ground_truth(const JsonNode& node, Row& row) {
   if (!node.has("ground_truth")) return;
   using evaluation::GroundTruth;
@@ -265,7 +265,7 @@ evaluation::Claim read_claim(const JsonNode& node, std::uint64_t seeds) {
   claim.text = node["text"].text();
   if (!node["holds_fraction"].is_null()) claim.holds_fraction = node["holds_fraction"].number();
   if (!node["needs"].is_null()) claim.needs = node["needs"].text();
-  claim.decided_seeds = claim.holds_fraction ? seeds : 0;  // archives of simbench 0.1
+  claim.decided_seeds = claim.holds_fraction ? seeds : 0;  // before the first release
   if (node.has("decided_seeds")) {
     claim.decided_seeds = static_cast<std::uint64_t>(node["decided_seeds"].count());
   }
@@ -286,7 +286,7 @@ void read_paper_part(const JsonNode& root, evaluation::Results& results) {
   }
 }
 
-// Archives of simbench 0.1 lack the member: steered exposures and clocks rank as now.
+// Archives from before the first release lack the member: steered exposures and clocks rank as now.
 evaluation::RankedBy read_ranked_by(const JsonNode& root, const evaluation::Results& results) {
   using evaluation::RankedBy;
   if (results.kind == evaluation::ResultKind::kClockRuns) return RankedBy::kClockSpread;
@@ -537,7 +537,7 @@ void read_seed_details(Archive& archive) {
   }
   CsvFile frames(archive, "frames.csv",
                  {"pipeline,seed,pulse,amd_ms,rmdv_ms",
-                  "pipeline,seed,pulse,spread_ms,deviation_ms"});  // before simbench 0.2
+                  "pipeline,seed,pulse,spread_ms,deviation_ms"});  // before the first release
   Row* row = nullptr;
   while (frames.next_row()) {
     score_of(frames, results, row)
@@ -547,7 +547,7 @@ void read_seed_details(Archive& archive) {
   }
   CsvFile hosts(archive, "hosts.csv",
                 {kHostsHeader, "pipeline,seed,host,host_error_ms,synchronised",
-                 "pipeline,seed,host,error_ms,synchronised"});  // before simbench 0.2
+                 "pipeline,seed,host,error_ms,synchronised"});  // before the first release
   while (hosts.next_row()) {
     SeedScore& score = score_of(hosts, results, row);
     if (hosts.number<std::size_t>(2) != score.host_errors_ms.size()) {

@@ -1,8 +1,12 @@
-// Writes the reports of a gate: text, JSON, JUnit.
+// Writes the reports of a gate: text, Markdown, JSON, JUnit.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "recording/collected.h"
+#include "recording/text_fields.h"
 #include "reports/comparison/gate.h"
 #include "reports/results/json.h"
 #include "reports/text/block.h"
@@ -68,34 +72,41 @@ std::string outcome_text(GateOutcome outcome) {
   return outcome == GateOutcome::kPossible ? "possibly worse" : outcome_name(outcome);
 }
 
-std::string gate_head(const GateReport& report) {
+std::string gate_verdict(const GateReport& report) {
+  const char* const mode = report.mode == GateMode::kExact ? "exact" : "statistical";
+  if (report.passed()) {
+    return fmt::format("gate passed: {}, {} of them the same ({})",
+                       counted(report.checks.size(), "check"), report.count(GateOutcome::kSame),
+                       mode);
+  }
   const std::size_t failed = report.count(GateOutcome::kFailed) + report.vanished_pipelines.size();
-  const std::string verdict =
-      report.passed()
-          ? fmt::format("gate passed: {}, {} of them the same",
-                        counted(report.checks.size(), "check"), report.count(GateOutcome::kSame))
-          : fmt::format("gate FAILED: {} of {}", failed,
-                        counted(report.checks.size() + report.vanished_pipelines.size(), "check"));
-  return wrapped(fmt::format("{} ({}). {}, {}: {} against the baseline {} (simbench {}, commit {})",
-                             verdict, report.mode == GateMode::kExact ? "exact" : "statistical",
-                             scenarios::named(report.scenario, report.derivation),
-                             seeds_words(report), report.result_path, report.baseline_path,
-                             report.baseline_version, report.baseline_commit)) +
-         (report.derivation.changes.empty() ? ""
-                                            : wrapped(scenarios::changed_text(report.derivation)));
+  const std::size_t all = report.checks.size() + report.vanished_pipelines.size();
+  return fmt::format("gate FAILED: {} of {} ({})", failed, counted(all, "check"), mode);
 }
 
-std::string failures(const GateReport& report) {
-  std::string text;
+// What was compared with what, and what is changed in its world.
+std::vector<std::string> gate_head(const GateReport& report) {
+  std::vector<std::string> paragraphs = {fmt::format(
+      "{}, {}: {} against the baseline {} (simbench {}, commit {})",
+      scenarios::named(report.scenario, report.derivation), seeds_words(report), report.result_path,
+      report.baseline_path, report.baseline_version, report.baseline_commit)};
+  if (!report.derivation.changes.empty()) {
+    paragraphs.push_back(scenarios::changed_text(report.derivation));
+  }
+  return paragraphs;
+}
+
+std::vector<std::string> failures(const GateReport& report) {
+  std::vector<std::string> all;
   for (const std::string& name : report.vanished_pipelines) {
-    text += wrapped(
-        fmt::format("FAILED: the pipeline {} of the baseline is not in the result", name), 2);
+    all.push_back(
+        fmt::format("FAILED: the pipeline {} of the baseline is not in the result", name));
   }
   for (const GateCheck& check : report.checks) {
     if (check.outcome != GateOutcome::kFailed) continue;
-    text += wrapped(fmt::format("FAILED: {}", check_text(report, check)), 2);
+    all.push_back(fmt::format("FAILED: {}", check_text(report, check)));
   }
-  return text.empty() ? text : "\n" + text;
+  return all;
 }
 
 // Exact mode shows all changes; statistical mode, where everything changes, significant ones.
@@ -104,7 +115,8 @@ bool is_shown(const GateReport& report, const GateCheck& check) {
   return report.mode == GateMode::kExact || check.outcome != GateOutcome::kChanged;
 }
 
-std::string changes(const GateReport& report) {
+// Nothing: all is the same.
+std::optional<Table> changes(const GateReport& report) {
   Table table({{"pipeline", Align::kLeft},
                {"metric", Align::kLeft},
                {"baseline"},
@@ -114,23 +126,19 @@ std::string changes(const GateReport& report) {
                {"seeds\nchanged"},
                {.header = "outcome", .align = Align::kLeft, .is_verdict = true}},
               2);
-  bool is_empty = true;
   for (const GateCheck& check : report.checks) {
     if (!is_shown(report, check)) continue;
-    is_empty = false;
     table.add({check.pipeline, check.metric->title, gate_value(check, check.baseline),
                gate_value(check, check.value), change_text(check), gate_value(check, check.margin),
                fmt::format("{}", check.changed_seeds), outcome_text(check.outcome)});
   }
-  return is_empty ? "" : "\nWhat changed\n\n" + plain(table);
+  if (table.rows.empty()) return std::nullopt;
+  return table;
 }
 
-std::string list_lines(const char* title, const std::vector<std::string>& texts) {
-  if (texts.empty()) return "";
-  std::string all = fmt::format("\n{}\n", title);
-  for (const std::string& text : texts) all += fmt::format("  {}\n", text);
-  return all;
-}
+constexpr const char* kChangesHeading = "What changed";
+constexpr const char* kNotesHeading = "Notes";
+constexpr const char* kReproduceHeading = "To reproduce";
 
 }  // namespace
 
@@ -159,11 +167,48 @@ std::string check_text(const GateReport& report, const GateCheck& check) {
 }
 
 std::string gate_text(const GateReport& report) {
-  std::string notes;
-  for (const std::string& note : report.notes) notes += wrapped(note, 2);
-  return gate_head(report) + failures(report) + changes(report) +
-         (notes.empty() ? notes : "\nNotes\n" + notes) +
-         (report.passed() ? "" : list_lines("To reproduce", report.reproduce));
+  std::vector<std::string> head = gate_head(report);
+  head.front() = fmt::format("{}. {}", gate_verdict(report), head.front());
+  std::string text;
+  for (const std::string& paragraph : head) text += wrapped(paragraph);
+  const std::vector<std::string> failed = failures(report);
+  if (!failed.empty()) text += "\n";
+  for (const std::string& failure : failed) text += wrapped(failure, 2);
+  if (const std::optional<Table> changed = changes(report)) {
+    text += fmt::format("\n{}\n\n{}", kChangesHeading, plain(*changed));
+  }
+  if (!report.notes.empty()) text += fmt::format("\n{}\n", kNotesHeading);
+  for (const std::string& note : report.notes) text += wrapped(note, 2);
+  if (report.passed()) return text;
+  text += fmt::format("\n{}\n", kReproduceHeading);
+  for (const std::string& command : report.reproduce) text += fmt::format("  {}\n", command);
+  return text;
+}
+
+std::string gate_markdown(const GateReport& report) {
+  // Whatever names have in them, a text stays in its line.
+  const auto lines = [](const std::vector<std::string>& texts) {
+    return collected(texts, printable_name);
+  };
+  Document document{.title = fmt::format("{}: {}", report.scenario, gate_verdict(report)),
+                    .head = lines(gate_head(report))};
+  if (const std::vector<std::string> failed = failures(report); !failed.empty()) {
+    document.blocks.push_back({.items = lines(failed)});
+  }
+  if (std::optional<Table> changed = changes(report)) {
+    document.blocks.push_back({.heading = kChangesHeading, .table = std::move(changed)});
+  }
+  if (!report.notes.empty()) {
+    document.blocks.push_back({.heading = kNotesHeading, .items = lines(report.notes)});
+  }
+  std::string text = markdown(document);
+  if (report.passed()) return text;
+  // Four blanks make lines of code, whatever is in them.
+  text += fmt::format("\n### {}\n\n", kReproduceHeading);
+  for (const std::string& command : report.reproduce) {
+    text += fmt::format("    {}\n", printable_name(command));
+  }
+  return text;
 }
 
 namespace {

@@ -110,7 +110,9 @@ std::string difference(const nlohmann::json& there, const nlohmann::json& here) 
     std::erase_if(pointers, is_consequence);
   }
   if (pointers.empty()) return "its manifest.json was edited";
-  const std::string& first = pointers.front();
+  // Where two versions differ, that says most.
+  const bool is_other_version = std::ranges::find(pointers, "/version") != pointers.end();
+  const std::string first = is_other_version ? "/version" : pointers.front();
   std::string text = fmt::format("{} is {} there and {} here", first, shown(flat_there, first),
                                  shown(flat_here, first));
   if (pointers.size() > 1) text += fmt::format(", and {} more differ", pointers.size() - 1);

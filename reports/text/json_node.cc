@@ -130,7 +130,10 @@ void JsonNode::check_schema_version(int newest) const {
   const JsonNode version = (*this)["schema_version"];
   const std::int64_t found = version.count();
   if (found > newest) {
-    version.refuse(fmt::format("at most {}; a newer simbench wrote this, use that one", newest));
+    const bool is_stated = has("version") && value_["version"].is_string();
+    version.refuse(
+        fmt::format("at most {}; {}", newest,
+                    advice_on_newer_format(is_stated ? value_["version"].get<std::string>() : "")));
   }
   if (found < 1) version.refuse(fmt::format("1 to {}", newest));
 }

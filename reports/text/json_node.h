@@ -52,7 +52,8 @@ class JsonNode {
   // A metric's number (null is NaN), or its values, one for each seed: such as it can be.
   double value_of(const evaluation::Metric& metric) const;
   std::vector<double> values_of(const evaluation::Metric& metric, std::size_t seeds) const;
-  // The member "schema_version": 1 to `newest`.
+  // The member "schema_version": 1 to `newest`. The message for a later one names the member
+  // "version" beside it, the simbench that wrote the file.
   void check_schema_version(int newest) const;
   std::string dump() const { return value_.dump(2); }
 

@@ -1,5 +1,6 @@
 #include "recording/recording_manifest.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "recording/version.h"
 #include "tests/recording/random_events.h"
 
 namespace simbench {
@@ -74,8 +76,8 @@ TEST(RecordingManifestTest, AScenarioMayBeAbsent) {
 TEST(RecordingManifestTest, MessagesNamePlaceFoundAndAllowed) {
   EXPECT_EQ(manifest_error(changed("/format", "zip")),
             "m.json: /format: found '\"zip\"', allowed: 'simbench recording'");
-  EXPECT_EQ(manifest_error(changed("/format_version", 2)),
-            "m.json: /format_version: found '2', allowed: a whole number from 1 to 1");
+  EXPECT_EQ(manifest_error(changed("/format_version", 0)),
+            "m.json: /format_version: found '0', allowed: a whole number from 1 to 1");
   EXPECT_EQ(manifest_error(changed("/captures/0/layout/camera_hosts/1", 2)),
             "m.json: /captures/0/layout/camera_hosts/1: found '2', allowed: a whole number from 0 "
             "to 1");
@@ -85,6 +87,13 @@ TEST(RecordingManifestTest, MessagesNamePlaceFoundAndAllowed) {
             "m.json: /captures: found '5', allowed: an array of at most 1000000");
   EXPECT_THAT(manifest_error("{\"format\": }"),
               HasSubstr("m.json: parse error at line 1, column 12"));
+}
+
+TEST(RecordingManifestTest, ANewerFormatNamesItsWriterAndThisProgram) {
+  EXPECT_EQ(manifest_error(changed("/format_version", 2)),
+            fmt::format("m.json: /format_version: found '2', allowed: at most 1; a newer simbench "
+                        "({0}) wrote this and reads it; this is simbench {0}",
+                        version()));
 }
 
 TEST(RecordingManifestTest, NumbersBeyondWhatARigCanHaveAreRefused) {

@@ -206,8 +206,8 @@ void Inputs::add_archives() {
        4,
        {"baseline.json"},
        {{"gate", "@good/archive", "--baseline", "%"},
-        {"gate", "@good/archive", "--baseline", "%", "--mode", "statistical", "--format",
-         "junit"}}});
+        {"gate", "@good/archive", "--baseline", "%", "--mode", "statistical", "--format", "junit"},
+        {"gate", "@good/archive", "--baseline", "%", "--format", "markdown"}}});
 
   const std::vector<std::string> sweep = with_world(
       {"sweep", "--sweep", "/trigger/rate_hz=15,30", "--seeds", "1", "--jobs", "1", "--output"});

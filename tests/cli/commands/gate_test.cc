@@ -54,6 +54,9 @@ TEST_F(Gate, TheSameCodePasses) {
   EXPECT_EQ(gate("now", {"--format", "junit"}).out, content("gate.xml"));
   EXPECT_EQ(gate("now/results.json").status, 0);
   EXPECT_THAT(names_in(), ElementsAre("b.json", "before", "gate.xml", "now"));
+  EXPECT_EQ(gate("now", {"--markdown", "gate.md"}).status, 0);
+  EXPECT_TRUE(content("gate.md").starts_with("## 18cam_6host_45fps: gate passed: 8 checks, "));
+  EXPECT_EQ(gate("now", {"--format", "markdown"}).out, content("gate.md"));
 }
 
 // What a faster build changes: /performance, the clock times of the manifest, version and commit.
@@ -120,7 +123,7 @@ TEST_F(Gate, AnAmdBelowZeroIsRefusedAndALostOneFailsWithoutANan) {
   }
   for (Json& value : results["rows"][1]["amd_ms"]["values"]) value = nullptr;
   file("now/results.json", results.dump(2));
-  for (const std::string format : {"text", "json", "junit"}) {
+  for (const std::string format : {"text", "markdown", "json", "junit"}) {
     const ProgramResult lost = gate("now", {"--format", format});
     EXPECT_EQ(lost.status, 3);
     EXPECT_THAT(lost.out, HasSubstr("2 of 2 seeds lost"));
@@ -148,6 +151,7 @@ TEST_F(Gate, BadInputIsToldApart) {
   EXPECT_THAT(newer.err, HasSubstr("/schema_version: found 99"));
   file("b.json", whole);
   EXPECT_EQ(gate("now", {"--junit", "no/such/folder/gate.xml"}).status, 2);
+  EXPECT_EQ(gate("now", {"--markdown", "no/such/folder/gate.md"}).status, 2);
   run_to("other", {"--seeds", "2", "--set", "/trigger/rate_hz=30"});
   const ProgramResult other = gate("other");
   EXPECT_EQ(other.status, 2);

@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "recording/version.h"
 #include "tests/cli/program.h"
 
 namespace simbench {
@@ -247,6 +248,20 @@ TEST_F(SweepTest, AnotherSweepIsNotTouched) {
   const ProgramResult restarted = run(command("out", {"--first-seed", "2", "--restart"}));
   EXPECT_EQ(restarted.status, 0) << restarted.err;
   EXPECT_THAT(restarted.err, Not(HasSubstr("already")));
+}
+
+TEST_F(SweepTest, ThatOfAnotherVersionNamesIt) {
+  ASSERT_EQ(run(command("out")).status, 0);
+  std::string manifest = content("out/manifest.json");
+  const std::string stated = fmt::format("\"version\": \"{}\"", version());
+  const std::size_t at = manifest.find(stated);
+  ASSERT_NE(at, std::string::npos) << manifest;
+  file("out/manifest.json", manifest.replace(at, stated.size(), "\"version\": \"1.7.3\""));
+  const ProgramResult result = run(command("out"));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err,
+              HasSubstr(fmt::format(
+                  "holds another sweep: /version is \"1.7.3\" there and \"{}\" here", version())));
 }
 
 TEST_F(SweepTest, ForeignFoldersAreRefused) {

@@ -13,6 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using scenarios::InputError;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -257,6 +258,44 @@ TEST(GateText, NamesAllThatIsNeededToRepeatAFailure) {
   EXPECT_THAT(gate_text(exact(working_archive("now"))),
               AllOf(HasSubstr("gate passed: 8 checks, 8 of them the same"),
                     Not(HasSubstr("To reproduce"))));
+}
+
+TEST(GateMarkdown, SaysWhatFailedAndHowToRepeatIt) {
+  const GateReport report = exact(scaled(1.5));
+  const std::string text = gate_markdown(report);
+  EXPECT_TRUE(text.starts_with("## sample: gate FAILED: 1 of 8 checks (exact)\n\n")) << text;
+  EXPECT_THAT(text, HasSubstr("\n- FAILED: " + check_text(report, amd_of_good(report)) + "\n"));
+  EXPECT_THAT(text, HasSubstr("\n### What changed\n\n| pipeline | metric | baseline | now |"));
+  EXPECT_THAT(text, HasSubstr("\n| good | AMD |"));
+  EXPECT_THAT(text,
+              HasSubstr("\n### To reproduce\n\n    simbench run --scenario 'my sample.json'"));
+  EXPECT_TRUE(text.ends_with("\n    simbench gate now --baseline b.json\n")) << text;
+}
+
+TEST(GateMarkdown, OfAPassedGateHasTheNumbersAndNoMore) {
+  const std::string text = gate_markdown(exact(working_archive("now")));
+  EXPECT_TRUE(text.starts_with("## sample: gate passed: 8 checks, 8 of them the same (exact)\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("sample, seeds 1-32: now against the baseline b.json"),
+                          Not(HasSubstr("FAILED")), Not(HasSubstr("###"))));
+}
+
+// Names are anyone's: none begins a heading, a list or code of its own.
+TEST(GateMarkdown, ShowsNamesAsText) {
+  Archive before = working_archive("before");
+  Archive now = scaled(1.5);
+  for (Archive* archive : {&before, &now}) {
+    for (evaluation::Row& row : archive->results.rows) row.pipeline += "|\n# no";
+  }
+  now.results.rows.push_back(now.results.rows.front());
+  now.results.rows.back().pipeline = "new\n# no";
+  GateReport report = gate(now, baseline_of(before), GateMode::kExact);
+  EXPECT_FALSE(report.passed());
+  report.reproduce.push_back("simbench run '\n# no'");
+  const std::string text = gate_markdown(report);
+  EXPECT_THAT(text, AllOf(HasSubstr("- FAILED: AMD of good|\\x0a# no in sample"),
+                          HasSubstr("| good\\|\\x0a# no |"), HasSubstr("new\\x0a# no"),
+                          HasSubstr("\n    simbench run '\\x0a# no'\n")));
+  EXPECT_THAT(text, Not(HasSubstr("\n# no")));
 }
 
 TEST(GateCommands, OfAResultAloneAreMadeUpFromWhatItTells) {
