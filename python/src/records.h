@@ -9,8 +9,6 @@
 //   PyObject_CallOneArg(method, reference.get());
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <new>
 
 #include "python/src/python_algorithm.h"
@@ -39,7 +37,7 @@ struct FrameRecordObject {
 };
 
 // Adds both types to the module, before anything is renewed.
-void bind_records(py::module_& module);
+void bind_records(const Object& module);
 
 // Owns a record of one kind; may be dropped on any thread.
 class RecordReference {
@@ -47,7 +45,9 @@ class RecordReference {
   RecordReference() = default;
   RecordReference(const RecordReference&) = delete;
   RecordReference& operator=(const RecordReference&) = delete;
-  ~RecordReference() { shared(py::reinterpret_steal<py::object>(object_)); }
+  ~RecordReference() {
+    if (object_ != nullptr) shared(Object::owned(object_));
+  }
 
   PyObject* get() const { return object_; }
   // With the GIL.
@@ -65,7 +65,7 @@ template <class Record>
 Record& renewed(RecordReference& reference) {
   PyObject* object = reference.get();
   if (object == nullptr || Py_REFCNT(object) > 1) {
-    object = Record::type->tp_alloc(Record::type, 0);
+    object = PyType_GenericAlloc(Record::type, 0);
     if (object == nullptr) throw std::bad_alloc();
     reference.set(object);
   }
