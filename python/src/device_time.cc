@@ -33,14 +33,14 @@ Nanoseconds sensor_of(const DeviceSample& sample) {
 
 // What stamp() returned, in nanoseconds.
 GlobalTime global_time(const PythonAlgorithm& algorithm, PyObject* result) {
-  if (PyFloat_Check(result)) {
-    const double ns = PyFloat_AsDouble(result);
-    if (std::abs(ns) < kLargestNs) return GlobalTime(from_ns(ns));
-  } else if (PyIndex_Check(result)) {
+  if (PyLong_Check(result) || (!PyFloat_Check(result) && PyIndex_Check(result) != 0)) {
     int overflow = 0;
     const long long ns = PyLong_AsLongLongAndOverflow(result, &overflow);
     if (ns == -1 && PyErr_Occurred() != nullptr) throw_python_failure(algorithm);
     if (overflow == 0) return GlobalTime(Nanoseconds(ns));
+  } else if (PyFloat_Check(result)) {
+    const double ns = PyFloat_AsDouble(result);
+    if (std::abs(ns) < kLargestNs) return GlobalTime(from_ns(ns));
   }
   throw_misuse(algorithm,
                "returned " + shown(result) +
@@ -53,7 +53,7 @@ class OnlineEstimator final : public DeviceTimeEstimator {
   OnlineEstimator(Definition algorithm, const Parameters& parameters)
       : algorithm_(std::move(algorithm)), parameters_(parameters) {
     const Object object = make_instance(*algorithm_, keywords_of(*algorithm_, parameters));
-    method_ = method_of(*algorithm_, object, "stamp");
+    stamp_ = RecordMethod<SampleRecord>(method_of(*algorithm_, object, "stamp"));
     if (has_trait(*algorithm_, "on_poll")) on_poll_ = method_of(*algorithm_, object, "on_poll");
     if (has_trait(*algorithm_, "on_adjustment")) {
       on_adjustment_ = method_of(*algorithm_, object, "on_adjustment");
@@ -68,12 +68,12 @@ class OnlineEstimator final : public DeviceTimeEstimator {
   }
 
   GlobalTime stamp_with_gil(const DeviceSample& sample) {
-    SampleRecord& record = renewed<SampleRecord>(record_);
+    SampleRecord& record = stamp_.renewed();
     record.sensor_ns = sensor_of(sample).count();
     record.arrival_ns = nanoseconds_of(sample.arrival);
     record.arrival_steady_ns = nanoseconds_of(sample.arrival_steady);
     record.exposure_us = sample.exposure_us;
-    PyObject* const result = PyObject_CallFunctionObjArgs(method_.get(), record_.get(), nullptr);
+    PyObject* const result = stamp_.called();
     if (result == nullptr) throw_python_failure(*algorithm_);
     const Object owned = Object::owned(result);
     return global_time(*algorithm_, result);
@@ -111,10 +111,9 @@ class OnlineEstimator final : public DeviceTimeEstimator {
 
   Definition algorithm_;
   Parameters parameters_;
-  SharedObject method_;
+  RecordMethod<SampleRecord> stamp_;
   SharedObject on_poll_;
   SharedObject on_adjustment_;
-  RecordReference record_;
   bool from_first_frame_ = false;
   bool relative_ = false;
 };

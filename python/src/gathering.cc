@@ -29,7 +29,8 @@ class PythonGatherer final : public Gatherer {
                  imported("simbench.algorithms")
                      .attribute("GatheringSetup")(setup.sources, setup.period.count(),
                                                   setup.interval.count(), setup.queue_limit));
-    method_ = method_of(*algorithm_, make_instance(*algorithm_, keywords), "push");
+    push_ = RecordMethod<FrameRecordObject>(
+        method_of(*algorithm_, make_instance(*algorithm_, keywords), "push"));
     from_first_frame_ = has_trait(*algorithm_, "from_first_frame");
   }
 
@@ -53,14 +54,14 @@ class PythonGatherer final : public Gatherer {
  private:
   void push_with_gil(const GatherFrame& frame, FrameSetSink& sink) {
     ++pushed_;
-    auto& record = renewed<FrameRecordObject>(record_);
+    FrameRecordObject& record = push_.renewed();
     record.source = frame.source;
     record.stamp_ns = nanoseconds_of(frame.stamp);
     record.arrival_ns = nanoseconds_of(frame.arrival);
     record.sensor_ns = nanoseconds_of(frame.sensor);
     record.tag = frame.tag;
     record.is_used = false;
-    PyObject* const result = PyObject_CallFunctionObjArgs(method_.get(), record_.get(), nullptr);
+    PyObject* const result = push_.called();
     if (result == nullptr) throw_python_failure(*algorithm_);
     const Object sets = Object::owned(result);
     if (result == Py_None) return;
@@ -119,8 +120,7 @@ class PythonGatherer final : public Gatherer {
 
   std::shared_ptr<const PythonAlgorithm> algorithm_;
   std::size_t sources_;
-  SharedObject method_;
-  RecordReference record_;
+  RecordMethod<FrameRecordObject> push_;
   bool from_first_frame_ = false;
   std::vector<GatherFrame> set_;  // that is being emitted
   std::uint64_t pushed_ = 0;

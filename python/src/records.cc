@@ -95,6 +95,16 @@ PyTypeObject* made_type(const Object& module, const char* name, std::size_t size
 
 }  // namespace
 
+RecordFunction record_function(const SharedObject& method) {
+  static const SharedObject bound = shared(imported("types").attribute("MethodType"));
+  const Object whole = Object::borrowed(method.get());
+  if (reinterpret_cast<PyObject*>(Py_TYPE(method.get())) != bound.get()) {
+    return {method, python_tuple({Object::none()}), 0};
+  }
+  return {shared(whole.attribute("__func__")),
+          python_tuple({whole.attribute("__self__"), Object::none()}), 1};
+}
+
 void bind_records(const Object& module) {
   SampleRecord::type = made_type(module, "simbench.Sample", sizeof(SampleRecord),
                                  "A frame of one camera, as stamp() gets it.",
