@@ -36,7 +36,7 @@ void set_python_error(const std::exception_ptr& thrown);
 PyTypeObject* add_type(const Object& module, PyType_Spec& spec);
 // Methods are kept.
 void add_functions(const Object& module, std::vector<PyMethodDef> functions);
-// Of a class that Python cannot make an object of.
+// Makes no object, for a class whose objects functions return.
 PyObject* refuse_new(PyTypeObject* type, PyObject* arguments, PyObject* keywords);
 // Gives back the memory of an object, which its class has been held by.
 void free_object(PyObject* object);
@@ -109,12 +109,13 @@ decltype(auto) argument(PyObject* object) {
   }
 }
 
+// `place`: from 1; 0: a value of its own.
 template <class Parameter>
-decltype(auto) argument_at(const char* function, std::size_t place, PyObject* object) try {
+decltype(auto) argument_at(const char* name, std::size_t place, PyObject* object) try {
   return argument<Parameter>(object);
 } catch (const ConversionError& error) {
-  throw ConversionError(std::string(function) + "(): argument " + std::to_string(place) + ": " +
-                        error.what());
+  const std::string where = place == 0 ? "" : "(): argument " + std::to_string(place);
+  throw ConversionError(name + where + ": " + error.what());
 }
 
 // What Python calls: a function, a method (with the object before its arguments), a property.
@@ -128,13 +129,13 @@ class Trampoline {
   static PyObject* function(PyObject* /*module*/, PyObject* arguments) {
     return with_errors([&] {
       check_count(name, arguments, kCount);
-      return called(arguments, std::make_index_sequence<kCount>());
+      return called(nullptr, arguments, std::make_index_sequence<kCount>());
     });
   }
   static PyObject* method(PyObject* self, PyObject* arguments) {
     return with_errors([&] {
       check_count(name, arguments, kCount - 1);
-      return called_of(self, arguments, std::make_index_sequence<kCount - 1>());
+      return called(self, arguments, std::make_index_sequence<kCount>());
     });
   }
   static PyObject* property(PyObject* self, void* /*closure*/) {
@@ -155,16 +156,16 @@ class Trampoline {
       return nullptr;
     }
   }
-  template <std::size_t... places>
-  static Object called([[maybe_unused]] PyObject* arguments, std::index_sequence<places...>) {
-    return result(argument_at<At<places>>(name, places + 1, PyTuple_GetItem(arguments, places))...);
+  // `self`: the first value; null: there is none but the arguments.
+  static PyObject* object_at(PyObject* self, PyObject* arguments, std::size_t place) {
+    if (self == nullptr) return PyTuple_GetItem(arguments, static_cast<Py_ssize_t>(place));
+    return place == 0 ? self : PyTuple_GetItem(arguments, static_cast<Py_ssize_t>(place - 1));
   }
   template <std::size_t... places>
-  static Object called_of(PyObject* self, [[maybe_unused]] PyObject* arguments,
-                          std::index_sequence<places...>) {
-    return result(
-        argument<At<0>>(self),
-        argument_at<At<places + 1>>(name, places + 1, PyTuple_GetItem(arguments, places))...);
+  static Object called([[maybe_unused]] PyObject* self, [[maybe_unused]] PyObject* arguments,
+                       std::index_sequence<places...>) {
+    return result(argument_at<At<places>>(name, places + (self == nullptr ? 1 : 0),
+                                          object_at(self, arguments, places))...);
   }
   template <class... Values>
   static Object result(Values&&... values) {
@@ -212,7 +213,7 @@ struct Field<member> {
   static int set(PyObject* self, PyObject* value, void* /*closure*/) {
     try {
       if (value == nullptr) throw_error(PyExc_TypeError, std::string(name) + ": cannot be deleted");
-      (*value_of<Class>(self)).*member = Conversion<Value>::from(value);
+      (*value_of<Class>(self)).*member = argument_at<Value>(name, 0, value);
       return 0;
     } catch (...) {
       set_python_error(std::current_exception());

@@ -82,7 +82,7 @@ class Object {
   bool is_none() const { return object_ == Py_None; }
 
   Object attribute(const char* name) const;
-  // Of a dictionary.
+  // The item of a dictionary.
   Object operator[](const char* key) const;
   bool contains(const char* key) const;
   template <class Value>
@@ -173,12 +173,23 @@ struct Conversion<bool> {
   static Object to(bool value) { return Object::borrowed(value ? Py_True : Py_False); }
 };
 
+std::int64_t signed_number(PyObject* object, std::int64_t low, std::int64_t high);
+std::uint64_t unsigned_number(PyObject* object, std::uint64_t high);
+
 template <std::integral Value>
 struct Conversion<Value> {
-  using Limits = std::numeric_limits<Value>;
-  using Widest = std::conditional_t<std::signed_integral<Value>, std::int64_t, std::uint64_t>;
-  static Value from(PyObject* object);
-  static Object to(Value value);
+  static Value from(PyObject* object) {
+    using Limits = std::numeric_limits<Value>;
+    if constexpr (std::signed_integral<Value>) {
+      return static_cast<Value>(signed_number(object, Limits::min(), Limits::max()));
+    } else {
+      return static_cast<Value>(unsigned_number(object, Limits::max()));
+    }
+  }
+  static Object to(Value value) {
+    if constexpr (std::signed_integral<Value>) return Object::owned(PyLong_FromLongLong(value));
+    return Object::owned(PyLong_FromUnsignedLongLong(static_cast<std::uint64_t>(value)));
+  }
 };
 
 template <>
@@ -263,24 +274,6 @@ struct DictItem {
   Object value;
 };
 Object dict(std::initializer_list<DictItem> items = {});
-
-std::int64_t signed_number(PyObject* object, std::int64_t low, std::int64_t high);
-std::uint64_t unsigned_number(PyObject* object, std::uint64_t high);
-
-template <std::integral Value>
-Value Conversion<Value>::from(PyObject* object) {
-  if constexpr (std::signed_integral<Value>) {
-    return static_cast<Value>(signed_number(object, Limits::min(), Limits::max()));
-  } else {
-    return static_cast<Value>(unsigned_number(object, Limits::max()));
-  }
-}
-
-template <std::integral Value>
-Object Conversion<Value>::to(Value value) {
-  if constexpr (std::signed_integral<Value>) return Object::owned(PyLong_FromLongLong(value));
-  return Object::owned(PyLong_FromUnsignedLongLong(static_cast<std::uint64_t>(value)));
-}
 
 template <class Value>
 void Object::set(const char* key, const Value& value) {

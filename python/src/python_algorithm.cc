@@ -120,7 +120,8 @@ Object keywords_of(const PythonAlgorithm& algorithm, const Parameters& parameter
   for (const auto& [name, value] : parameters.all()) {
     const double* const number = std::get_if<double>(&value);
     if (number == nullptr || std::ranges::count(algorithm.whole, name) == 0) {
-      std::visit([&](const auto& held) { keywords.set(name.c_str(), held); }, value);
+      const char* const key = name.c_str();
+      std::visit([&](const auto& held) { keywords.set(key, held); }, value);
     } else if (*number == std::floor(*number) && std::abs(*number) < 9e15) {
       keywords.set(name.c_str(), static_cast<std::int64_t>(*number));
     } else {
