@@ -90,11 +90,11 @@ std::string last_lines(const std::string& file) {
 }  // namespace
 
 ChildProcess::ChildProcess(const Settings& settings)
-    : name_(settings.arguments.empty() ? settings.program : settings.arguments.front()),
+    : name_(settings.arguments.empty() ? settings.program.front() : settings.arguments.front()),
       log_(settings.log) {
-  std::vector<char*> arguments = {const_cast<char*>(settings.program.c_str())};
-  for (const std::string& each : settings.arguments) {
-    arguments.push_back(const_cast<char*>(each.c_str()));
+  std::vector<char*> arguments;
+  for (const auto* words : {&settings.program, &settings.arguments}) {
+    for (const std::string& each : *words) arguments.push_back(const_cast<char*>(each.c_str()));
   }
   arguments.push_back(nullptr);
   const Descriptor log(open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
@@ -102,7 +102,7 @@ ChildProcess::ChildProcess(const Settings& settings)
   Pipe output;
   Pipe left_hub;
   Pipe connected;
-  const Plan plan{.program = settings.program.c_str(),
+  const Plan plan{.program = settings.program.front().c_str(),
                   .arguments = arguments.data(),
                   .log = log.number(),
                   .output = output.write.number(),

@@ -1,6 +1,8 @@
 #include <exception>
 #include <string>
+#include <vector>
 
+#include "app/own_program.h"
 #include "app/program_pipelines.h"
 #include "python/src/binding.h"
 #include "python/src/bindings.h"
@@ -19,14 +21,18 @@ PyModuleDef definition = {.m_base = PyModuleDef_HEAD_INIT,
                           .m_clear = nullptr,
                           .m_free = nullptr};
 
+// `words`: how this program is started again. Real programs find the preloaded library in the
+// package's folder.
+void use_programs(const std::vector<std::string>& words, const std::string& folder) {
+  app::set_own_program({.words = words, .library_folder = folder});
+  app::use_programs();
+}
+
 Object made_module() {
   Object module = Object::owned(PyModule_Create(&definition));
   PyModule_AddStringConstant(module.get(), "version", std::string(version()).c_str());
   PyModule_AddStringConstant(module.get(), "commit", std::string(commit()).c_str());
-  // Real programs find the preloaded library in the package's folder.
-  add_functions(module, {function("use_programs", [](const std::string& folder) {
-                  app::use_programs({.library_folder = folder});
-                })});
+  add_functions(module, {function("use_programs", callable<&use_programs>)});
   bind_rows(module);
   bind_scenarios(module);
   bind_results(module);
