@@ -225,7 +225,8 @@ RecordingCost ExperimentSource::record(const RecordingRequest& request, Recordin
                                  .namespaces = options_.namespaces,
                                  .programs = has_programs,
                                  .program_log = program_log(request.seed),
-                                 .program = own_program().words});
+                                 .program = own_program().path,
+                                 .leading = own_program().leading});
     hardware::RigSource source(rig.conductor(), rig.key(), scenario_,
                                {.progress = options_.progress,
                                 .prompt = {},

@@ -3,7 +3,8 @@
 // A program finds both by its own file. One that is a module of an interpreter says so, once and
 // before anything runs.
 //
-//   set_own_program({.words = {"/usr/bin/python3", "-m", "simbench"}, .library_folder = "/opt"});
+//   set_own_program({.path = "/usr/bin/python3", .leading = {"-m", "simbench"},
+//                    .library_folder = "/opt"});
 #pragma once
 
 #include <string>
@@ -12,8 +13,8 @@
 namespace simbench::app {
 
 struct OwnProgram {
-  // A path, and what comes before the arguments.
-  std::vector<std::string> words = {"/proc/self/exe"};
+  std::string path = "/proc/self/exe";
+  std::vector<std::string> leading{};  // words before the arguments, as an interpreter needs them
   // Empty: ../lib or ../lib/simbench, from the program's own folder.
   std::string library_folder{};
 };

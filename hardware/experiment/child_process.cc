@@ -90,10 +90,10 @@ std::string last_lines(const std::string& file) {
 }  // namespace
 
 ChildProcess::ChildProcess(const Settings& settings)
-    : name_(settings.arguments.empty() ? settings.program.front() : settings.arguments.front()),
+    : name_(settings.arguments.empty() ? settings.program : settings.arguments.front()),
       log_(settings.log) {
-  std::vector<char*> arguments;
-  for (const auto* words : {&settings.program, &settings.arguments}) {
+  std::vector<char*> arguments = {const_cast<char*>(settings.program.c_str())};
+  for (const auto* words : {&settings.leading, &settings.arguments}) {
     for (const std::string& each : *words) arguments.push_back(const_cast<char*>(each.c_str()));
   }
   arguments.push_back(nullptr);
@@ -102,7 +102,7 @@ ChildProcess::ChildProcess(const Settings& settings)
   Pipe output;
   Pipe left_hub;
   Pipe connected;
-  const Plan plan{.program = settings.program.front().c_str(),
+  const Plan plan{.program = settings.program.c_str(),
                   .arguments = arguments.data(),
                   .log = log.number(),
                   .output = output.write.number(),

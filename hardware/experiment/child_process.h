@@ -6,7 +6,7 @@
 //
 // Errors: ChildError, with the last lines of its standard error.
 //
-//   ChildProcess node({.program = {"/proc/self/exe"}, .arguments = {"node"}, .log = "node0.log"});
+//   ChildProcess node({.program = "/proc/self/exe", .arguments = {"node"}, .log = "node0.log"});
 //   std::string line = node.read_line(deadline);  // "node host0: listening on ..."
 #pragma once
 
@@ -30,7 +30,8 @@ class ChildError : public std::runtime_error {
 class ChildProcess {
  public:
   struct Settings {
-    std::vector<std::string> program;    // a path, and what comes before the arguments
+    std::string program;
+    std::vector<std::string> leading{};  // words before the arguments, as an interpreter needs them
     std::vector<std::string> arguments;  // without the program's own name
     std::string log;                     // a file; for standard error
     // The member of a NetworkSandbox in whose namespace it runs; none: in the caller's.

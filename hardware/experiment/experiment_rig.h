@@ -63,8 +63,8 @@ struct ExperimentSettings {
   bool namespaces = false;
   bool programs = false;      // a wire for each node, on which its programs speak; needs namespaces
   std::string program_log{};  // where their files stay; empty: nowhere
-  // simbench: a path, and what comes before the arguments.
-  std::vector<std::string> program = {"/proc/self/exe"};
+  std::string program = "/proc/self/exe";  // simbench
+  std::vector<std::string> leading{};      // words before its arguments
 };
 
 class ExperimentRig {

@@ -29,7 +29,7 @@ from .tables import table as _table
 _folder = os.path.dirname(os.path.abspath(__file__))
 _command = f"import sys; sys.path.insert(0, {os.path.dirname(_folder)!r}); " \
     "from simbench.__main__ import main; sys.exit(main())"
-_simbench.use_programs([sys.executable, "-c", _command], _folder)
+_simbench.use_programs(sys.executable or "python3", ["-c", _command], _folder)
 __version__: str = _simbench.version
 
 __all__ = [

@@ -21,10 +21,11 @@ PyModuleDef definition = {.m_base = PyModuleDef_HEAD_INIT,
                           .m_clear = nullptr,
                           .m_free = nullptr};
 
-// `words`: how this program is started again. Real programs find the preloaded library in the
-// package's folder.
-void use_programs(const std::vector<std::string>& words, const std::string& folder) {
-  app::set_own_program({.words = words, .library_folder = folder});
+// How this program is started again: the interpreter, and the words before the arguments. Real
+// programs find the preloaded library in the package's folder.
+void use_programs(const std::string& interpreter, const std::vector<std::string>& leading,
+                  const std::string& folder) {
+  app::set_own_program({.path = interpreter, .leading = leading, .library_folder = folder});
   app::use_programs();
 }
 

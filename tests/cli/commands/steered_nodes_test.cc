@@ -101,7 +101,7 @@ TEST_P(SteeredNodes, ExposuresComeTogether) {
   const hardware::ExperimentRig rig({.scenario = &scenario,
                                      .recording = folder() / "played.csv",
                                      .clocks = {{}, {}},
-                                     .program = {SIMBENCH_PROGRAM}});
+                                     .program = SIMBENCH_PROGRAM});
   hardware::RigSource source(rig.conductor(), rig.key(), scenario, {});
   KeptRecording recording;
   const RecordingCost cost = source.record({.seed = 1, .pipeline = GetParam()}, recording);

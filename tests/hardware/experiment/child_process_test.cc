@@ -24,7 +24,7 @@ MonotonicTime child_limit() { return monotonic_now() + std::chrono::seconds(20);
 class ChildProcessTest : public testing::Test {
  protected:
   ChildProcess::Settings shell(const std::string& script) const {
-    return {.program = {"/bin/sh"},
+    return {.program = "/bin/sh",
             .arguments = {"-c", script},
             .log = folder_.file("log"),
             .sandbox_member = std::nullopt};

@@ -18,7 +18,7 @@ namespace {
 
 ChildProcess::Settings member(const TemporaryFolder& folder, unsigned number,
                               const std::string& script) {
-  return {.program = {"/bin/sh"},
+  return {.program = "/bin/sh",
           .arguments = {"-c", script},
           .log = folder.file("log"),
           .sandbox_member = number};
