@@ -10,6 +10,7 @@ writes a wheel of a module that was built elsewhere (write_wheel()) and prints i
 """
 
 import base64
+import functools
 import glob
 import hashlib
 import os
@@ -77,14 +78,16 @@ def _check():
         _fail(f"found {sys.implementation.name} on {sys.platform}, needed: CPython on Linux")
 
 
+@functools.lru_cache(maxsize=None)
 def _terminal():
     """Where somebody waits for pip, which keeps what a backend prints: pip's own standard error, if
-    that is a terminal; else None."""
+    that is a terminal, below pip's line; else None."""
     try:
         terminal = open(f"/proc/{os.getppid()}/fd/2", "wb", buffering=0)
     except OSError:
         return None
     if os.isatty(terminal.fileno()):
+        terminal.write(b"\n")
         return terminal
     terminal.close()
     return None
@@ -93,8 +96,6 @@ def _terminal():
 def _run(*command):
     """Shows a terminal what the command says, else keeps it for pip, which shows it after an error."""
     terminal = None if os.isatty(2) else _terminal()
-    if terminal:
-        terminal.write(b"\n")  # below pip's line
     if subprocess.call(command, cwd=ROOT, stdout=sys.stderr, stderr=terminal) != 0:
         _fail(f"`{' '.join(command)}` failed, see above")
 
