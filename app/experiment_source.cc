@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "algorithms/device_time/clock_map.h"
+#include "app/own_program.h"
 #include "hardware/conductor/rig_source.h"
 #include "hardware/experiment/network_sandbox.h"
 #include "hardware/relay/network_law.h"
@@ -224,7 +225,8 @@ RecordingCost ExperimentSource::record(const RecordingRequest& request, Recordin
                                  .namespaces = options_.namespaces,
                                  .programs = has_programs,
                                  .program_log = program_log(request.seed),
-                                 .program = options_.program});
+                                 .program = own_program().path,
+                                 .leading = own_program().leading});
     hardware::RigSource source(rig.conductor(), rig.key(), scenario_,
                                {.progress = options_.progress,
                                 .prompt = {},

@@ -46,7 +46,6 @@ struct ExperimentOptions {
   // Gets the relay's statistics after each repetition, a line of JSON (hardware/relay/relay.h).
   std::function<void(const std::string&)> relay_statistics{};  // may be empty
   std::string program_log{};  // where the files of pipelines' programs stay; empty: nowhere
-  std::string program = "/proc/self/exe";  // simbench
 };
 
 class ExperimentSource final : public RecordingSource {

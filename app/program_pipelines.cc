@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/ports/host_sync.h"
+#include "app/own_program.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/node_programs.h"
 #include "processes/child.h"
@@ -31,8 +32,9 @@ std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-// The library lies where it was built, was installed, or where the caller says.
-std::string find_shim(const std::string& folder) {
+// The library lies where it was built, was installed, or where the program says.
+std::string find_shim() {
+  const std::string& folder = own_program().library_folder;
   if (!folder.empty()) return folder + "/libsimbench_shim.so";
   for (const char* place : {"../lib/libsimbench_shim.so", "../lib/simbench/libsimbench_shim.so"}) {
     const std::filesystem::path path = (own_folder() / place).lexically_normal();
@@ -99,7 +101,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
                                 .hosts = static_cast<std::size_t>(scenario.hosts.count)};
   std::string problem;
   try {
-    settings.shim = find_shim(options.library_folder);
+    settings.shim = find_shim();
     find(settings.programs, settings.paths);
   } catch (const sim::ProgramError& missing) {
     problem = missing.what();
@@ -127,7 +129,7 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
       .log_folder = logs.empty() ? "" : logs + "/" + pipeline.name,
       .interface = interface};
   try {
-    settings.shim = find_shim(options.library_folder);
+    settings.shim = find_shim();
     find(settings.programs, settings.paths);
     return std::make_unique<hardware::NodePrograms>(std::move(settings));
   } catch (const sim::ProgramError& missing) {
@@ -142,7 +144,7 @@ std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
   std::map<std::string, std::string> paths;
   std::set<std::string> remarks;
   try {
-    const std::string shim = find_shim(options.library_folder);
+    const std::string shim = find_shim();
     find(programs, paths);
     for (const auto* role : {&programs.master, &programs.slave}) {
       for (const HostPrograms::Command& command : *role) {

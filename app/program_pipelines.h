@@ -1,7 +1,7 @@
 // Pipelines whose host synchronisation is real programs: what they need of this machine.
 //
 // Programs are found before the run (bare names as the shell would, sim/programs/find_program.h),
-// and so is the preloaded library that is installed beside this program. What is missing is one
+// and so is the preloaded library (own_program.h). What is missing is one
 // line, with what would help; the pipelines of algorithms go on.
 //
 //   use_programs({.log_folder = "logs"});  // once, before running anything
@@ -25,9 +25,6 @@ struct ProgramFolders {
   // Where the hosts' folders stay, in PIPELINE/seed1/host0, with what the programs printed; empty:
   // nowhere.
   std::string log_folder{};
-  // Where the preloaded library is, of a program that is a module of an interpreter; empty: beside
-  // this program.
-  std::string library_folder{};
 };
 
 // The programs of a pipeline on the host of a node (hardware/node/node_programs.h), whose programs'

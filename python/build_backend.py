@@ -1,10 +1,17 @@
 """Builds the wheel for pip (PEP 517), without a network and without packages of its own.
 
-The module is built by tools/build in build/release, beside the libraries that are there already.
-What PyPI shows comes from pyproject.toml, the version from CMakeLists.txt.
+The module is built by tools/build in build/release, beside the libraries that are there already; pip
+shows its progress on a terminal. What PyPI shows comes from pyproject.toml, the version from
+CMakeLists.txt.
+
+    python3 python/build_backend.py WHEEL_DIRECTORY MODULE SHIM TAG
+
+writes a wheel of a module that was built elsewhere (write_wheel()) and prints its name.
 """
 
 import base64
+import functools
+import glob
 import hashlib
 import os
 import re
@@ -15,7 +22,7 @@ import tarfile
 import zipfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-PACKAGE = os.path.join(ROOT, "build", "release", "python", "simbench")
+BUILD = os.path.join(ROOT, "build", "release")
 
 
 def _fail(text):
@@ -60,8 +67,8 @@ def _metadata():
 
 
 def _tag():
-    python = f"cp{sys.version_info[0]}{sys.version_info[1]}"
-    return f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+    """Every CPython from 3.9 on, on machines like this one."""
+    return f"cp39-abi3-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
 
 
 def _check():
@@ -71,37 +78,56 @@ def _check():
         _fail(f"found {sys.implementation.name} on {sys.platform}, needed: CPython on Linux")
 
 
+@functools.lru_cache(maxsize=None)
+def _terminal():
+    """Where somebody waits for pip, which keeps what a backend prints: pip's own standard error, if
+    that is a terminal, below pip's line; else None."""
+    try:
+        terminal = open(f"/proc/{os.getppid()}/fd/2", "wb", buffering=0)
+    except OSError:
+        return None
+    if os.isatty(terminal.fileno()):
+        terminal.write(b"\n")
+        return terminal
+    terminal.close()
+    return None
+
+
 def _run(*command):
-    if subprocess.call(command, cwd=ROOT, stdout=sys.stderr) != 0:
+    """Shows a terminal what the command says, else keeps it for pip, which shows it after an error."""
+    terminal = None if os.isatty(2) else _terminal()
+    if subprocess.call(command, cwd=ROOT, stdout=sys.stderr, stderr=terminal) != 0:
         _fail(f"`{' '.join(command)}` failed, see above")
 
 
+def _headers():
+    """An option for the headers of the interpreter that pip runs; none for those of the system, which
+    CMake finds. One module serves all versions, so any will do."""
+    if glob.glob("/usr/include/python3.*/Python.h"):
+        return []
+    own = sysconfig.get_path("include")
+    if os.path.exists(os.path.join(own, "Python.h")):
+        return [f"-DPython_INCLUDE_DIR={own}"]
+    _run(os.path.join(ROOT, "tools", "setup"), "build", "--with-python")
+    return []
+
+
 def _build_module():
-    """Builds with the interpreter that pip runs; its headers are those of its base installation."""
+    """Compiles the module alone where tools/run has built the libraries (build/release), else all."""
     _check()
-    setup = os.path.join(ROOT, "tools", "setup")
-    _run(setup, "build", "--with-python")
-    header = os.path.join(sysconfig.get_path("include"), "Python.h")
-    if not os.path.exists(header):
-        _fail(f"{header}: not found; `apt-get install python3-dev` brings it for Debian's Python")
-    _run(
-        os.path.join(ROOT, "tools", "build"),
-        "release",
-        "-DSIMBENCH_BUILD_PYTHON=ON",
-        f"-DPython_EXECUTABLE={os.path.realpath(sys.executable)}",
-        "simbench_python",
-    )
+    _run(os.path.join(ROOT, "tools", "setup"), "build")
+    options = ["-DSIMBENCH_BUILD_PYTHON=ON", *_headers()]
+    if not os.path.exists(os.path.join(BUILD, "CMakeCache.txt")):  # as tools/run has it
+        options += ["-DSIMBENCH_BUILD_TESTS=OFF", "-DSIMBENCH_BUILD_BENCH=OFF"]
+    _run(os.path.join(ROOT, "tools", "build"), "release", *options, "simbench_python")
 
 
-def _package_files():
-    """Name in the wheel and path of each file: the interface, the module, and the library that is
-    preloaded into real programs."""
+def _interface_files():
+    """Name in the wheel and path of each file in Python."""
     source = os.path.join(ROOT, "python", "simbench")
     for name in sorted(os.listdir(source)):
         if name.endswith((".py", ".pyi")) or name == "py.typed":
             yield f"simbench/{name}", os.path.join(source, name)
-    for name in ("_simbench" + sysconfig.get_config_var("EXT_SUFFIX"), "libsimbench_shim.so"):
-        yield f"simbench/{name}", os.path.realpath(os.path.join(PACKAGE, name))
 
 
 def _file_bytes(path):
@@ -109,16 +135,49 @@ def _file_bytes(path):
         return file.read()
 
 
-def _wheel_text():
-    return f"Wheel-Version: 1.0\nGenerator: simbench\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
+def _wheel_text(tag):
+    interpreter, abi, platforms = tag.split("-")
+    tags = [f"Tag: {interpreter}-{abi}-{platform}\n" for platform in platforms.split(".")]
+    return "Wheel-Version: 1.0\nGenerator: simbench\nRoot-Is-Purelib: false\n" + "".join(tags)
 
 
-def _info_files():
+def _info():
+    return f"simbench-{_version()}.dist-info"
+
+
+def _info_files(tag):
     return {
         "METADATA": _metadata().encode(),
-        "WHEEL": _wheel_text().encode(),
+        "WHEEL": _wheel_text(tag).encode(),
+        "entry_points.txt": b"[console_scripts]\nsimbench = simbench.__main__:main\n",
         "LICENSE": _read("LICENSE").encode(),
     }
+
+
+def write_wheel(wheel_directory, module_path, shim_path, tag):
+    """Writes a wheel of this module and of the library that is preloaded into real programs (shim),
+    and returns its name. The same files and tag give the same bytes with the same Python.
+
+    `tag`: cp39-abi3-linux_x86_64, or several platforms as cp39-abi3-manylinux_2_28_x86_64.linux_x86_64
+    """
+    files = {name: _file_bytes(path) for name, path in _interface_files()}
+    files["simbench/_simbench.abi3.so"] = _file_bytes(module_path)
+    files["simbench/libsimbench_shim.so"] = _file_bytes(shim_path)
+    info = _info()
+    files.update({f"{info}/{name}": content for name, content in _info_files(tag).items()})
+    record = ""
+    for name, content in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+        record += f"{name},sha256={digest},{len(content)}\n"
+    files[f"{info}/RECORD"] = (record + f"{info}/RECORD,,\n").encode()
+    wheel = f"simbench-{_version()}-{tag}.whl"
+    with zipfile.ZipFile(os.path.join(wheel_directory, wheel), "w") as archive:
+        for name, content in files.items():
+            entry = zipfile.ZipInfo(name)  # of 1980
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = (0o755 if name.endswith(".so") else 0o644) << 16
+            archive.writestr(entry, content)
+    return wheel
 
 
 def get_requires_for_build_wheel(config_settings=None):
@@ -126,33 +185,19 @@ def get_requires_for_build_wheel(config_settings=None):
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    info = f"simbench-{_version()}.dist-info"
-    os.makedirs(os.path.join(metadata_directory, info))
-    for name, content in _info_files().items():
-        with open(os.path.join(metadata_directory, info, name), "wb") as file:
+    os.makedirs(os.path.join(metadata_directory, _info()))
+    for name, content in _info_files(_tag()).items():
+        with open(os.path.join(metadata_directory, _info(), name), "wb") as file:
             file.write(content)
-    return info
+    return _info()
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     _build_module()
-    info = f"simbench-{_version()}.dist-info"
-    files = {name: _file_bytes(path) for name, path in _package_files()}
-    files.update({f"{info}/{name}": content for name, content in _info_files().items()})
-    record = ""
-    for name, content in files.items():
-        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
-        record += f"{name},sha256={digest},{len(content)}\n"
-    files[f"{info}/RECORD"] = (record + f"{info}/RECORD,,\n").encode()
-    wheel = f"simbench-{_version()}-{_tag()}.whl"
-    path = os.path.join(wheel_directory, wheel)
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            entry = zipfile.ZipInfo(name)  # of 1980: the same files give the same wheel
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o755 if name.endswith(".so") else 0o644) << 16
-            archive.writestr(entry, content)
-    return wheel
+    package = os.path.join(BUILD, "python", "simbench")
+    module, shim = (os.path.join(package, name)
+                    for name in ("_simbench.abi3.so", "libsimbench_shim.so"))
+    return write_wheel(wheel_directory, module, shim, _tag())
 
 
 def build_sdist(sdist_directory, config_settings=None):
@@ -163,3 +208,9 @@ def build_sdist(sdist_directory, config_settings=None):
         for path in filter(None, listed.split("\0")):
             archive.add(os.path.join(ROOT, path), f"{name}/{path}", recursive=False)
     return f"{name}.tar.gz"
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 5:
+        _fail("usage: build_backend.py WHEEL_DIRECTORY MODULE SHIM TAG")
+    print(write_wheel(*sys.argv[1:]))

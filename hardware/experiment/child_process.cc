@@ -93,8 +93,8 @@ ChildProcess::ChildProcess(const Settings& settings)
     : name_(settings.arguments.empty() ? settings.program : settings.arguments.front()),
       log_(settings.log) {
   std::vector<char*> arguments = {const_cast<char*>(settings.program.c_str())};
-  for (const std::string& each : settings.arguments) {
-    arguments.push_back(const_cast<char*>(each.c_str()));
+  for (const auto* words : {&settings.leading, &settings.arguments}) {
+    for (const std::string& each : *words) arguments.push_back(const_cast<char*>(each.c_str()));
   }
   arguments.push_back(nullptr);
   const Descriptor log(open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));

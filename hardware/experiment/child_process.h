@@ -31,6 +31,7 @@ class ChildProcess {
  public:
   struct Settings {
     std::string program;
+    std::vector<std::string> leading{};  // words before the arguments, as an interpreter needs them
     std::vector<std::string> arguments;  // without the program's own name
     std::string log;                     // a file; for standard error
     // The member of a NetworkSandbox in whose namespace it runs; none: in the caller's.

@@ -192,6 +192,7 @@ void ExperimentRig::start_node(unsigned node, const std::string& file) {
   }
   nodes_.push_back(std::make_unique<ChildProcess>(ChildProcess::Settings{
       .program = settings_.program,
+      .leading = settings_.leading,
       .arguments = std::move(arguments),
       .log = folder_.file(name + ".log"),
       .sandbox_member = settings_.namespaces ? std::optional(node) : std::nullopt,
@@ -214,6 +215,7 @@ void ExperimentRig::start_relay(const std::vector<std::string>& node_files) {
     arguments.insert(arguments.end(), {"--wires", fmt::format("{}", fmt::join(wires, ","))});
   }
   relay_ = std::make_unique<ChildProcess>(ChildProcess::Settings{.program = settings_.program,
+                                                                 .leading = settings_.leading,
                                                                  .arguments = std::move(arguments),
                                                                  .log = folder_.file("relay.log"),
                                                                  .sandbox_member = std::nullopt});

@@ -64,6 +64,7 @@ struct ExperimentSettings {
   bool programs = false;      // a wire for each node, on which its programs speak; needs namespaces
   std::string program_log{};  // where their files stay; empty: nowhere
   std::string program = "/proc/self/exe";  // simbench
+  std::vector<std::string> leading{};      // words before its arguments
 };
 
 class ExperimentRig {

@@ -12,6 +12,7 @@ All of it is what the command `simbench` computes, with the same numbers. docs/p
 from __future__ import annotations
 
 import os
+import sys
 from typing import Any
 
 from . import _simbench
@@ -25,7 +26,10 @@ from .results import Comparison, Result, compare, load, run
 from .rigs import Diagnosis, Inspection, diagnose, inspect, replay
 from .tables import table as _table
 
-_simbench.use_programs(os.path.dirname(os.path.abspath(__file__)))
+_folder = os.path.dirname(os.path.abspath(__file__))
+_command = f"import sys; sys.path.insert(0, {os.path.dirname(_folder)!r}); " \
+    "from simbench.__main__ import main; sys.exit(main())"
+_simbench.use_programs(sys.executable or "python3", ["-c", _command], _folder)
 __version__: str = _simbench.version
 
 __all__ = [

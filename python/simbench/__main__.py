@@ -1,10 +1,11 @@
 """`python3 -m simbench ARGUMENTS` is the command `simbench` with algorithms in Python.
 
-`simbench run --python FILE ...` goes on as this.
+It is the command that pip installs, and `simbench run --python FILE ...` goes on as this.
 """
 
 import importlib.util
 import os
+import signal
 import sys
 import traceback
 
@@ -43,6 +44,7 @@ def _line(error: BaseException, file: str) -> int:
 
 def main(arguments=None) -> int:
     """Runs the command line and returns its exit status."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends at a closed pipe, as the program does
     return _simbench.command_line(["simbench", *sys.argv[1:]] if arguments is None else arguments)
 
 

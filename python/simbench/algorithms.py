@@ -23,6 +23,7 @@ import types
 from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
 
 from . import _simbench
+from .errors import MissingPackage
 from .host import Camera, Host
 
 Sample = _simbench.Sample
@@ -203,6 +204,31 @@ def _columns(cls: type, kind: str, method: Callable) -> list[str]:
         _refuse(cls, kind, f"stamp_all: found the arguments {', '.join(columns) or '(none)'}, "
                 f"allowed: any of {', '.join(_COLUMNS)}")
     return columns
+
+
+def column_of(cells: bytearray) -> Any:
+    """A column of stamp_all(): an array of int64 in this memory."""
+    try:
+        import numpy
+    except ImportError as error:
+        raise MissingPackage(f"stamp_all() needs NumPy, which is missing: {error}") from None
+    return numpy.frombuffer(cells, numpy.int64)
+
+
+def stamps_in(result: Any, frames: int) -> Union[str, tuple[bool, bytes]]:
+    """What stamp_all() returned: whether it is int64, else float64, and its bytes.
+
+    Else what it is instead; a result that is no array has no words here.
+    """
+    import numpy
+
+    if not isinstance(result, numpy.ndarray):
+        return ""
+    if result.dtype not in (numpy.int64, numpy.float64):
+        return f"an array of {result.dtype}"
+    if result.shape != (frames,):
+        return f"an array of shape {result.shape}"
+    return result.dtype == numpy.int64, numpy.asarray(result).tobytes()
 
 
 def gathering(name: str, **parameters: Any) -> Callable[[type], type]:

@@ -56,7 +56,7 @@ def array(rows: _simbench.Rows) -> Any:
     dtype = numpy.dtype(
         {"names": names, "formats": formats, "offsets": offsets, "itemsize": rows.row_bytes}
     )
-    return numpy.frombuffer(rows, dtype=dtype)
+    return numpy.asarray(rows).view(dtype)
 
 
 _STYLE = (

@@ -5,13 +5,13 @@
 //   register_python_device_time(definition);
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "python/src/object.h"
 
 namespace simbench::python {
 
-void register_python_device_time(const pybind11::dict& definition);
-void register_python_gathering(const pybind11::dict& definition);
-void register_python_host_sync(const pybind11::dict& definition);
-void register_python_capture_alignment(const pybind11::dict& definition);
+void register_python_device_time(const Object& definition);
+void register_python_gathering(const Object& definition);
+void register_python_host_sync(const Object& definition);
+void register_python_capture_alignment(const Object& definition);
 
 }  // namespace simbench::python

@@ -4,12 +4,15 @@
 // it stands on. They convert and call what the commands call, and compute nothing themselves.
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "python/src/object.h"
 
-void bind_algorithms(pybind11::module_& module);
-void bind_clocks(pybind11::module_& module);
-void bind_errors(pybind11::module_& module);
-void bind_recordings(pybind11::module_& module);
-void bind_results(pybind11::module_& module);
-void bind_rows(pybind11::module_& module);
-void bind_scenarios(pybind11::module_& module);
+namespace simbench::python {
+
+void bind_algorithms(const Object& module);
+void bind_clocks(const Object& module);
+void bind_recordings(const Object& module);
+void bind_results(const Object& module);
+void bind_rows(const Object& module);
+void bind_scenarios(const Object& module);
+
+}  // namespace simbench::python

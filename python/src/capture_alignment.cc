@@ -1,8 +1,6 @@
 // capture_alignment in Python: an `async def` function, which runs once for each camera.
 #include "algorithms/ports/capture_alignment.h"
 
-#include <pybind11/pybind11.h>
-
 #include <cstdint>
 #include <memory>
 #include <set>
@@ -21,7 +19,7 @@ class PythonCaptureAlignment final : public CaptureAlignment {
  public:
   PythonCaptureAlignment(AlgorithmDefinition algorithm, const Parameters& parameters)
       : algorithm_(std::move(algorithm)), parameters_(parameters) {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     keywords_of(*algorithm_, parameters_);  // refuses what is no whole number
   }
 
@@ -48,7 +46,7 @@ class PythonCaptureAlignment final : public CaptureAlignment {
 
 }  // namespace
 
-void register_python_capture_alignment(const py::dict& definition) {
+void register_python_capture_alignment(const Object& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
   replace_algorithm<CaptureAlignmentEntry>(
       {.info = algorithm->info, .make = [algorithm](const Parameters& parameters) {

@@ -1,5 +1,4 @@
 // Runs of the hosts' clocks alone for the package.
-#include <pybind11/stl.h>
 
 #include <chrono>
 #include <memory>
@@ -11,14 +10,13 @@
 #include "app/interrupt.h"
 #include "app/results.h"
 #include "evaluation/clock_run/clock_evaluation.h"
+#include "python/src/binding.h"
 #include "python/src/bindings.h"
 #include "python/src/run.h"
 #include "python/src/work.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/results/csv.h"
 #include "scenarios/loader.h"
-
-namespace py = pybind11;
 
 namespace simbench::python {
 namespace {
@@ -31,7 +29,7 @@ struct ClockRun {
 };
 
 std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t duration_s,
-                                     std::uint64_t from_s, const py::object& on_progress) {
+                                     std::uint64_t from_s, const Object& on_progress) {
   auto run = std::make_shared<ClockRun>();
   run->provenance.command = request.command;
   run->provenance.started = std::chrono::system_clock::now();
@@ -77,20 +75,23 @@ std::string clock_html(const ClockRun& run) {
 }
 
 }  // namespace
-}  // namespace simbench::python
 
-void bind_clocks(pybind11::module_& module) {
-  using namespace simbench;
-  using python::ClockRun;
-  py::class_<ClockRun, std::shared_ptr<ClockRun>>(module, "ClockRun")
-      .def_readonly("notes", &ClockRun::notes)
-      .def("csv", [](const ClockRun& run) { return reports::clock_csv(run.results); })
-      .def("tidy_csv", [](const ClockRun& run) { return reports::tidy_csv(run.results.results); })
-      .def("json", [](const ClockRun& run) { return reports::clock_json(run.results); })
-      .def("series_csv", &python::series_csv)
-      .def("text",
-           [](const ClockRun& run) { return app::clock_text(run.results, run.scenario, "table"); })
-      .def("html", &python::clock_html)
-      .def("save", &python::save_clocks);
-  module.def("run_clocks", &python::run_clocks);
+void bind_clocks(const Object& module) {
+  add_class<ClockRun>(
+      module, "simbench._simbench.ClockRun",
+      {.properties = {property("notes", [](const ClockRun& run) { return run.notes; })},
+       .methods = {
+           method("csv", [](const ClockRun& run) { return reports::clock_csv(run.results); }),
+           method("tidy_csv",
+                  [](const ClockRun& run) { return reports::tidy_csv(run.results.results); }),
+           method("json", [](const ClockRun& run) { return reports::clock_json(run.results); }),
+           method("series_csv", callable<&series_csv>),
+           method("text",
+                  [](const ClockRun& run) {
+                    return app::clock_text(run.results, run.scenario, "table");
+                  }),
+           method("html", callable<&clock_html>), method("save", callable<&save_clocks>)}});
+  add_functions(module, {function("run_clocks", callable<&run_clocks>)});
 }
+
+}  // namespace simbench::python

@@ -1,13 +1,15 @@
 // device_time in Python: a class with stamp(sample), or with stamp_all(...) of the whole recording.
 #include "algorithms/device_time/device_time.h"
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <memory>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,14 +33,14 @@ Nanoseconds sensor_of(const DeviceSample& sample) {
 
 // What stamp() returned, in nanoseconds.
 GlobalTime global_time(const PythonAlgorithm& algorithm, PyObject* result) {
-  if (PyFloat_Check(result)) {
-    const double ns = PyFloat_AS_DOUBLE(result);
-    if (std::abs(ns) < kLargestNs) return GlobalTime(from_ns(ns));
-  } else if (PyIndex_Check(result)) {
+  if (PyLong_Check(result) || (!PyFloat_Check(result) && PyIndex_Check(result) != 0)) {
     int overflow = 0;
     const long long ns = PyLong_AsLongLongAndOverflow(result, &overflow);
     if (ns == -1 && PyErr_Occurred() != nullptr) throw_python_failure(algorithm);
     if (overflow == 0) return GlobalTime(Nanoseconds(ns));
+  } else if (PyFloat_Check(result)) {
+    const double ns = PyFloat_AsDouble(result);
+    if (std::abs(ns) < kLargestNs) return GlobalTime(from_ns(ns));
   }
   throw_misuse(algorithm,
                "returned " + shown(result) +
@@ -50,8 +52,8 @@ class OnlineEstimator final : public DeviceTimeEstimator {
   // With the GIL.
   OnlineEstimator(Definition algorithm, const Parameters& parameters)
       : algorithm_(std::move(algorithm)), parameters_(parameters) {
-    const py::object object = make_instance(*algorithm_, parameters);
-    method_ = method_of(*algorithm_, object, "stamp");
+    const Object object = make_instance(*algorithm_, keywords_of(*algorithm_, parameters));
+    stamp_ = RecordMethod<SampleRecord>(method_of(*algorithm_, object, "stamp"));
     if (has_trait(*algorithm_, "on_poll")) on_poll_ = method_of(*algorithm_, object, "on_poll");
     if (has_trait(*algorithm_, "on_adjustment")) {
       on_adjustment_ = method_of(*algorithm_, object, "on_adjustment");
@@ -61,19 +63,19 @@ class OnlineEstimator final : public DeviceTimeEstimator {
   }
 
   GlobalTime stamp(const DeviceSample& sample) override {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     return stamp_with_gil(sample);
   }
 
   GlobalTime stamp_with_gil(const DeviceSample& sample) {
-    SampleRecord& record = renewed<SampleRecord>(record_);
+    SampleRecord& record = stamp_.renewed();
     record.sensor_ns = sensor_of(sample).count();
     record.arrival_ns = nanoseconds_of(sample.arrival);
     record.arrival_steady_ns = nanoseconds_of(sample.arrival_steady);
     record.exposure_us = sample.exposure_us;
-    PyObject* const result = PyObject_CallOneArg(method_.get(), record_.get());
+    PyObject* const result = stamp_.called();
     if (result == nullptr) throw_python_failure(*algorithm_);
-    const py::object owned = py::reinterpret_steal<py::object>(result);
+    const Object owned = Object::owned(result);
     return global_time(*algorithm_, result);
   }
 
@@ -99,22 +101,19 @@ class OnlineEstimator final : public DeviceTimeEstimator {
  private:
   template <class... Values>
   void report(const SharedObject& method, const char* type, Values... values) {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     try {
-      const py::object record = py::module_::import("simbench.algorithms").attr(type)(values...);
-      py::handle(method.get())(record);
-    } catch (py::error_already_set& raised) {
-      raised.restore();
-      throw_python_failure(*algorithm_);
+      Object::borrowed(method.get())(imported("simbench.algorithms").attribute(type)(values...));
+    } catch (const PythonError& raised) {
+      throw_python_failure(*algorithm_, raised);
     }
   }
 
   Definition algorithm_;
   Parameters parameters_;
-  SharedObject method_;
+  RecordMethod<SampleRecord> stamp_;
   SharedObject on_poll_;
   SharedObject on_adjustment_;
-  RecordReference record_;
   bool from_first_frame_ = false;
   bool relative_ = false;
 };
@@ -123,7 +122,7 @@ class OnlineEstimator final : public DeviceTimeEstimator {
 class OnlineBank final : public EstimatorBank {
  public:
   OnlineBank(const Definition& algorithm, const Parameters& parameters, std::size_t cameras) {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     estimators_.reserve(cameras);
     for (std::size_t i = 0; i < cameras; ++i) {
       estimators_.push_back(std::make_unique<OnlineEstimator>(algorithm, parameters));
@@ -133,7 +132,7 @@ class OnlineBank final : public EstimatorBank {
   DeviceTimeEstimator& at(std::size_t camera) override { return *estimators_[camera]; }
   void stamp(std::span<const std::uint32_t> cameras, std::span<const DeviceSample> samples,
              std::span<GlobalTime> stamps) override {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       stamps[i] = estimators_[cameras[i]]->stamp_with_gil(samples[i]);
     }
@@ -156,14 +155,30 @@ std::int64_t column_value(const std::string& column, const DeviceSample& sample)
   return sample.exposure_us;
 }
 
+constexpr std::size_t kCell = sizeof(std::int64_t);
+
+// A column in memory that Python may write.
+Object cells_of(std::span<const DeviceSample> recording, const std::string& column) {
+  const auto size = static_cast<Py_ssize_t>(recording.size() * kCell);
+  Object cells = Object::owned(PyByteArray_FromStringAndSize(nullptr, size));
+  char* next = PyByteArray_AsString(cells.get());
+  for (const DeviceSample& sample : recording) {
+    const std::int64_t value = column_value(column, sample);
+    std::memcpy(next, &value, kCell);
+    next += kCell;
+  }
+  return cells;
+}
+
 class OfflineEstimator final : public DeviceTimeEstimator {
  public:
   // With the GIL.
   OfflineEstimator(Definition algorithm, const Parameters& parameters)
       : algorithm_(std::move(algorithm)) {
-    method_ = method_of(*algorithm_, make_instance(*algorithm_, parameters), "stamp_all");
-    const py::handle traits(algorithm_->traits.get());
-    columns_ = traits["columns"].cast<std::vector<std::string>>();
+    method_ = method_of(
+        *algorithm_, make_instance(*algorithm_, keywords_of(*algorithm_, parameters)), "stamp_all");
+    const Object traits = Object::borrowed(algorithm_->traits.get());
+    columns_ = traits["columns"].as<std::vector<std::string>>();
     relative_ = has_trait(*algorithm_, "relative");
   }
 
@@ -171,18 +186,19 @@ class OfflineEstimator final : public DeviceTimeEstimator {
   bool relative() const override { return relative_; }
 
   void learn(std::span<const DeviceSample> recording) override {
-    const py::gil_scoped_acquire gil;
-    const auto frames = static_cast<py::ssize_t>(recording.size());
-    py::dict columns;
-    for (const std::string& name : columns_) {
-      py::array_t<std::int64_t> column(frames);
-      std::int64_t* value = column.mutable_data();
-      for (const DeviceSample& sample : recording) *value++ = column_value(name, sample);
-      columns[py::str(name)] = column;
+    const WithGil gil;
+    try {
+      const Object helpers = imported("simbench.algorithms");
+      Object columns = dict();
+      for (const std::string& name : columns_) {
+        columns.set(name.c_str(), helpers.attribute("column_of")(cells_of(recording, name)));
+      }
+      const Object none = python_tuple({});
+      const Object result = Object::owned(PyObject_Call(method_.get(), none.get(), columns.get()));
+      keep(result, helpers.attribute("stamps_in")(result, recording.size()), recording.size());
+    } catch (const PythonError& raised) {
+      throw_python_failure(*algorithm_, raised);
     }
-    PyObject* const result = PyObject_Call(method_.get(), py::tuple(0).ptr(), columns.ptr());
-    if (result == nullptr) throw_python_failure(*algorithm_);
-    keep(py::reinterpret_steal<py::object>(result), recording.size());
   }
 
   GlobalTime stamp(const DeviceSample& /*sample*/) override {
@@ -191,39 +207,41 @@ class OfflineEstimator final : public DeviceTimeEstimator {
   }
 
  private:
-  static constexpr const char* kExpected =
-      "; expected an array of int64 or float64 nanoseconds, one for each frame";
+  static std::string expected(std::size_t frames) {
+    return fmt::format(
+        "; expected an array of int64 or float64 nanoseconds, one for each of the {} frames",
+        frames);
+  }
 
-  void keep(const py::object& result, std::size_t frames) {
-    if (!py::isinstance<py::array>(result)) {
-      throw_misuse(*algorithm_, "returned " + shown(result.ptr()) + kExpected);
+  // `found`: what stamps_in() of simbench/algorithms.py made of the result.
+  void keep(const Object& result, const Object& found, std::size_t frames) {
+    if (PyUnicode_Check(found.get())) {
+      const auto what = found.as<std::string>();
+      throw_misuse(*algorithm_,
+                   "returned " + (what.empty() ? shown(result.get()) : what) + expected(frames));
     }
-    const auto array = py::reinterpret_borrow<py::array>(result);
-    const bool is_whole = py::isinstance<py::array_t<std::int64_t>>(array);
-    if (!is_whole && !py::isinstance<py::array_t<double>>(array)) {
-      const std::string type = py::str(array.dtype());
-      throw_misuse(*algorithm_, "returned an array of " + type + kExpected);
-    }
-    if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != frames) {
-      const std::string shape = py::str(array.attr("shape"));
-      throw_misuse(*algorithm_, "returned an array of shape " + shape + kExpected + ", which are " +
-                                    std::to_string(frames));
-    }
+    const auto [is_whole, bytes] = found.as<std::pair<bool, Object>>();
+    const char* next = bytes_in(bytes.get()).data();
     stamps_.resize(frames);
     next_ = 0;
-    if (is_whole) {
-      const auto values = py::array_t<std::int64_t>(array).unchecked<1>();
-      for (std::size_t i = 0; i < frames; ++i) stamps_[i] = GlobalTime(Nanoseconds(values(i)));
-    } else {
-      const auto values = py::array_t<double>(array).unchecked<1>();
-      for (std::size_t i = 0; i < frames; ++i) stamps_[i] = checked(values(i), i);
+    for (std::size_t i = 0; i < frames; ++i, next += kCell) {
+      stamps_[i] = is_whole ? GlobalTime(Nanoseconds(cell<std::int64_t>(next)))
+                            : checked(cell<double>(next), i, frames);
     }
   }
 
-  GlobalTime checked(double ns, std::size_t frame) const {
+  template <class Value>
+  static Value cell(const char* bytes) {
+    static_assert(sizeof(Value) == kCell);
+    Value value{};
+    std::memcpy(&value, bytes, kCell);
+    return value;
+  }
+
+  GlobalTime checked(double ns, std::size_t frame, std::size_t frames) const {
     if (std::abs(ns) < kLargestNs) return GlobalTime(from_ns(ns));
-    throw_misuse(*algorithm_, "returned " + std::to_string(ns) + " for frame " +
-                                  std::to_string(frame) + kExpected);
+    throw_misuse(*algorithm_,
+                 fmt::format("returned {} for frame {}{}", ns, frame, expected(frames)));
   }
 
   Definition algorithm_;
@@ -236,12 +254,12 @@ class OfflineEstimator final : public DeviceTimeEstimator {
 
 }  // namespace
 
-void register_python_device_time(const py::dict& definition) {
+void register_python_device_time(const Object& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
   replace_algorithm<DeviceTimeEntry>(
       {.info = algorithm->info,
        .make = [algorithm](const Parameters& parameters) -> std::unique_ptr<DeviceTimeEstimator> {
-         const py::gil_scoped_acquire gil;
+         const WithGil gil;
          if (algorithm->method == "stamp") {
            return std::make_unique<OnlineEstimator>(algorithm, parameters);
          }

@@ -1,11 +1,9 @@
 // gathering in Python: a class with push(frame), which returns sets of frames.
 #include "algorithms/gathering/gathering.h"
 
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,24 +24,23 @@ class PythonGatherer final : public Gatherer {
   PythonGatherer(std::shared_ptr<const PythonAlgorithm> algorithm, const Parameters& parameters,
                  const GatheringSetup& setup)
       : algorithm_(std::move(algorithm)), sources_(setup.sources) {
-    py::dict keywords = keywords_of(*algorithm_, parameters);
-    keywords["setup"] = py::module_::import("simbench.algorithms")
-                            .attr("GatheringSetup")(setup.sources, setup.period.count(),
-                                                    setup.interval.count(), setup.queue_limit);
-    PyObject* const made =
-        PyObject_Call(algorithm_->make.get(), py::tuple(0).ptr(), keywords.ptr());
-    if (made == nullptr) throw_python_failure(*algorithm_);
-    method_ = method_of(*algorithm_, py::reinterpret_steal<py::object>(made), "push");
+    Object keywords = keywords_of(*algorithm_, parameters);
+    keywords.set("setup",
+                 imported("simbench.algorithms")
+                     .attribute("GatheringSetup")(setup.sources, setup.period.count(),
+                                                  setup.interval.count(), setup.queue_limit));
+    push_ = RecordMethod<FrameRecordObject>(
+        method_of(*algorithm_, make_instance(*algorithm_, keywords), "push"));
     from_first_frame_ = has_trait(*algorithm_, "from_first_frame");
   }
 
   void push(const GatherFrame& frame, FrameSetSink& sink) override {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     push_with_gil(frame, sink);
   }
 
   void push_all(std::span<const GatherFrame> frames, TimedSetSink& sink) override {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     for (const GatherFrame& frame : frames) {
       sink.advance_to(frame.arrival);
       push_with_gil(frame, sink);
@@ -57,16 +54,16 @@ class PythonGatherer final : public Gatherer {
  private:
   void push_with_gil(const GatherFrame& frame, FrameSetSink& sink) {
     ++pushed_;
-    auto& record = renewed<FrameRecordObject>(record_);
+    FrameRecordObject& record = push_.renewed();
     record.source = frame.source;
     record.stamp_ns = nanoseconds_of(frame.stamp);
     record.arrival_ns = nanoseconds_of(frame.arrival);
     record.sensor_ns = nanoseconds_of(frame.sensor);
     record.tag = frame.tag;
     record.is_used = false;
-    PyObject* const result = PyObject_CallOneArg(method_.get(), record_.get());
+    PyObject* const result = push_.called();
     if (result == nullptr) throw_python_failure(*algorithm_);
-    const py::object sets = py::reinterpret_steal<py::object>(result);
+    const Object sets = Object::owned(result);
     if (result == Py_None) return;
     each(result, "returned ", [&](PyObject* set) { emit(set, sink); });
   }
@@ -74,15 +71,13 @@ class PythonGatherer final : public Gatherer {
   // Calls use(item) with each item of a list or another sequence.
   template <class Use>
   void each(PyObject* sequence, const char* what, Use use) {
-    PyObject* const fast = PySequence_Fast(sequence, "");
-    if (fast == nullptr) {
-      PyErr_Clear();
+    std::optional<Items> items;
+    try {
+      items.emplace(sequence);
+    } catch (const PythonError&) {
       throw_misuse(*algorithm_, what + shown(sequence) + kExpectedSets);
     }
-    const py::object owned = py::reinterpret_steal<py::object>(fast);
-    for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(fast); ++i) {
-      use(PySequence_Fast_GET_ITEM(fast, i));
-    }
+    for (std::size_t i = 0; i < items->size(); ++i) use((*items)[i]);
   }
 
   void emit(PyObject* set, FrameSetSink& sink) {
@@ -125,8 +120,7 @@ class PythonGatherer final : public Gatherer {
 
   std::shared_ptr<const PythonAlgorithm> algorithm_;
   std::size_t sources_;
-  SharedObject method_;
-  RecordReference record_;
+  RecordMethod<FrameRecordObject> push_;
   bool from_first_frame_ = false;
   std::vector<GatherFrame> set_;  // that is being emitted
   std::uint64_t pushed_ = 0;
@@ -135,13 +129,13 @@ class PythonGatherer final : public Gatherer {
 
 }  // namespace
 
-void register_python_gathering(const py::dict& definition) {
+void register_python_gathering(const Object& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
   replace_algorithm<GatheringEntry>(
       {.info = algorithm->info,
        .make = [algorithm](const Parameters& parameters,
                            const GatheringSetup& setup) -> std::unique_ptr<Gatherer> {
-         const py::gil_scoped_acquire gil;
+         const WithGil gil;
          return std::make_unique<PythonGatherer>(algorithm, parameters, setup);
        }});
 }

@@ -1,7 +1,5 @@
 #include "python/src/host_requests.h"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
@@ -12,6 +10,10 @@
 #include <cstring>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "python/src/binding.h"
 
 namespace simbench::python {
 namespace {
@@ -22,27 +24,25 @@ namespace asio = boost::asio;
 constexpr std::int64_t kFarthestNs = 4'000'000'000'000'000'000;
 constexpr std::int64_t kLongestNs = 86'400 * 365 * kSecondNs;  // of a wait
 
-Bytes bytes_of(const py::handle& object) {
-  char* data = nullptr;
-  Py_ssize_t size = 0;
-  if (PyBytes_AsStringAndSize(object.ptr(), &data, &size) != 0) throw py::error_already_set();
-  Bytes bytes(static_cast<std::size_t>(size));
-  std::memcpy(bytes.data(), data, bytes.size());
+Bytes bytes_of(const Object& object) {
+  const std::string_view held = bytes_in(object.get());
+  Bytes bytes(held.size());
+  std::memcpy(bytes.data(), held.data(), bytes.size());
   return bytes;
 }
 
-py::bytes python_bytes(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+[[noreturn]] void throw_value_error(const std::string& text) {
+  throw_error(PyExc_ValueError, text);
 }
 
-std::int64_t time_ns(const py::handle& object) {
-  const auto ns = object.cast<std::int64_t>();
+std::int64_t time_ns(const Object& object) {
+  const auto ns = object.as<std::int64_t>();
   if (std::abs(ns) <= kFarthestNs) return ns;
-  throw py::value_error("found " + std::to_string(ns) + " ns, allowed: within 4e18 of 0");
+  throw_value_error("found " + std::to_string(ns) + " ns, allowed: within 4e18 of 0");
 }
 
-std::int64_t interval_ns(const py::handle& object) {
-  return std::clamp<std::int64_t>(object.cast<std::int64_t>(), 0, kLongestNs);
+std::int64_t interval_ns(const Object& object) {
+  return std::clamp<std::int64_t>(object.as<std::int64_t>(), 0, kLongestNs);
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ Task<HostAnswer> controlled(HostRequest request, SharedPort port) {
 }
 
 // Readers of the arguments of requests, which are those of simbench/host.py.
-using Arguments = const py::tuple&;
+using Arguments = const std::vector<Object>&;
 
 void read_nothing(Arguments, const HostPort&, HostRequest&) {}
 void read_time(Arguments all, const HostPort&, HostRequest& made) { made.ns = time_ns(all[1]); }
@@ -184,23 +184,23 @@ void read_interval(Arguments all, const HostPort&, HostRequest& made) {
   made.ns = interval_ns(all[1]);
 }
 void read_rate(Arguments all, const HostPort&, HostRequest& made) {
-  made.ppb = all[1].cast<double>();
+  made.ppb = all[1].as<double>();
 }
 void read_slew(Arguments all, const HostPort&, HostRequest& made) {
   made.ns = time_ns(all[1]);
-  made.ppb = all[2].cast<double>();
+  made.ppb = all[2].as<double>();
 }
 
 // The peer, and whether it is the stream.
 void read_channel(Arguments all, const HostPort& port, HostRequest& made) {
-  made.peer = all[1].cast<PeerId>();
-  made.transport = all[2].cast<bool>() ? Transport::kStream : port.datagrams;
+  made.peer = all[1].as<PeerId>();
+  made.transport = all[2].as<bool>() ? Transport::kStream : port.datagrams;
   if (port.steers() && made.transport == Transport::kStream) {
-    throw py::value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
+    throw_value_error("channel: found a stream, allowed: of a capture_alignment datagrams");
   }
   if (!port.peers.contains(made.peer)) {
-    throw py::value_error("channel: found host " + std::to_string(made.peer) +
-                          ", allowed: of a slave the master, 0; of the master its slaves");
+    throw_value_error("channel: found host " + std::to_string(made.peer) +
+                      ", allowed: of a slave the master, 0; of the master its slaves");
   }
 }
 void read_message(Arguments all, const HostPort& port, HostRequest& made) {
@@ -217,15 +217,15 @@ void read_question(Arguments all, const HostPort& port, HostRequest& made) {
 }
 void read_stamp(Arguments all, const HostPort& port, HostRequest& made) {
   read_channel(all, port, made);
-  made.message = all[3].cast<MessageId>();
+  made.message = all[3].as<MessageId>();
   made.ns = interval_ns(all[4]);
 }
 
 void read_camera(Arguments all, const HostPort& port, HostRequest& made) {
-  made.camera = all[1].cast<std::uint32_t>();
+  made.camera = all[1].as<std::uint32_t>();
   if (made.camera < port.cameras.size()) return;
-  throw py::value_error("camera: found the one at place " + std::to_string(made.camera) +
-                        ", allowed: those of the host");
+  throw_value_error("camera: found the one at place " + std::to_string(made.camera) +
+                    ", allowed: those of the host");
 }
 void read_control(Arguments all, const HostPort& port, HostRequest& made) {
   read_camera(all, port, made);
@@ -240,7 +240,7 @@ enum class Touches : std::uint8_t { kNothing, kClock, kCard, kCardsClock, kChann
 struct HostOperation {
   const char* name;
   std::size_t arguments;
-  void (*read)(const py::tuple& all, const HostPort& port, HostRequest& made);
+  void (*read)(const std::vector<Object>& all, const HostPort& port, HostRequest& made);
   Task<HostAnswer> (*done)(HostRequest request, SharedPort port);
   Touches touches = Touches::kNothing;
 };
@@ -356,31 +356,32 @@ constexpr HostOperation kOperations[] = {
 void check_allowed(const HostRequest& request, const HostPort& port) {
   const Touches touches = request.operation->touches;
   if (port.steers() && (touches == Touches::kClock || touches == Touches::kCardsClock)) {
-    throw py::value_error("a capture_alignment sets no clock; that is the part of host_sync");
+    throw_value_error("a capture_alignment sets no clock; that is the part of host_sync");
   }
   const bool is_on_card = touches == Touches::kCard || touches == Touches::kCardsClock;
   if (is_on_card && port.get().hardware_clock() == nullptr) {
-    throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
+    throw_value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
   }
   if (touches == Touches::kChannel && port.receiving.contains({request.peer, request.transport})) {
-    throw py::value_error("another coroutine of this host waits on this channel");
+    throw_value_error("another coroutine of this host waits on this channel");
   }
   if (touches == Touches::kCamera && port.watching.contains(request.camera)) {
-    throw py::value_error("another coroutine waits for a frame of this camera");
+    throw_value_error("another coroutine waits for a frame of this camera");
   }
 }
 
 }  // namespace
 
-HostRequest host_request(const py::handle& request, const HostPort& port) {
-  const bool is_request = py::isinstance<py::tuple>(request) && py::len(request) > 0 &&
-                          py::isinstance<py::str>(request[py::int_(0)]);
-  const auto tuple = is_request ? py::reinterpret_borrow<py::tuple>(request) : py::tuple(0);
-  const std::string name = is_request ? tuple[0].cast<std::string>() : "";
+HostRequest host_request(const Object& request, const HostPort& port) {
+  std::vector<Object> tuple;
+  if (PyTuple_Check(request.get())) tuple = request.as<std::vector<Object>>();
+  const bool is_request = !tuple.empty() && PyUnicode_Check(tuple[0].get());
+  const std::string name = is_request ? tuple[0].as<std::string>() : "";
   const auto* const found = std::ranges::find_if(
       kOperations, [&name](const HostOperation& operation) { return name == operation.name; });
   if (found == std::end(kOperations) || tuple.size() != found->arguments + 1) {
-    throw py::type_error(
+    throw_error(
+        PyExc_TypeError,
         "awaits something that is no operation of its host; asyncio does not run here: "
         "await host.sleep_for(), host.clock.now(), host.channel(peer).receive() and the like");
   }
@@ -394,21 +395,23 @@ Task<HostAnswer> answered(HostRequest request, SharedPort port) {
   return request.operation->done(std::move(request), std::move(port));
 }
 
-py::object python_value(const HostAnswer& answer) {
+Object python_value(const HostAnswer& answer) {
   const auto record = [](const char* type, const auto&... values) {
-    return py::module_::import("simbench.host").attr(type)(values...);
+    return imported("simbench.host").attribute(type)(values...);
   };
-  if (const auto* number = std::get_if<std::int64_t>(&answer)) return py::int_(*number);
-  if (const auto* is_taken = std::get_if<bool>(&answer)) return py::bool_(*is_taken);
+  if (const auto* number = std::get_if<std::int64_t>(&answer)) return to_python(*number);
+  if (const auto* is_taken = std::get_if<bool>(&answer)) return to_python(*is_taken);
   if (const auto* message = std::get_if<ReceivedMessage>(&answer)) {
     std::optional<std::int64_t> hardware;
     if (message->received_hardware) hardware = nanoseconds_of(*message->received_hardware);
-    return record("Message", python_bytes(message->bytes), nanoseconds_of(message->received),
-                  nanoseconds_of(message->received_steady), hardware);
+    return record("Message", python_bytes(message->bytes.data(), message->bytes.size()),
+                  nanoseconds_of(message->received), nanoseconds_of(message->received_steady),
+                  hardware);
   }
   if (const auto* reply = std::get_if<ExchangeReply>(&answer)) {
-    return record("Reply", python_bytes(reply->bytes), nanoseconds_of(reply->t1),
-                  nanoseconds_of(reply->t2), nanoseconds_of(reply->t3), nanoseconds_of(reply->t4));
+    return record("Reply", python_bytes(reply->bytes.data(), reply->bytes.size()),
+                  nanoseconds_of(reply->t1), nanoseconds_of(reply->t2), nanoseconds_of(reply->t3),
+                  nanoseconds_of(reply->t4));
   }
   if (const auto* stamp = std::get_if<CrossStamp>(&answer)) {
     return record("CrossStamp", nanoseconds_of(stamp->before), nanoseconds_of(stamp->hardware),
@@ -420,7 +423,7 @@ py::object python_value(const HostAnswer& answer) {
                   nanoseconds_of(frame.exposed_steady), nanoseconds_of(frame.arrival),
                   nanoseconds_of(frame.arrival_steady), frame.exposure.count(), steered->settled);
   }
-  return py::none();
+  return Object::none();
 }
 
 namespace {
@@ -465,33 +468,34 @@ Task<void> say_done(Host& host, PeerId server) {
 
 namespace {
 
-py::dict camera_facts(const HostPort& port, std::uint32_t place) {
+Object camera_facts(const HostPort& port, std::uint32_t place) {
   const FrameControl& camera = *port.get().frame_controls()[place];
   const SteeredCamera& steered = port.cameras.at(place);
-  py::set controls;
+  std::vector<std::string> controls;
   for (std::size_t kind = 0; kind < kFrameControlNames.size(); ++kind) {
-    if (camera.limits().allowed[kind]) controls.add(py::str(kFrameControlNames[kind]));
+    if (camera.limits().allowed[kind]) controls.emplace_back(kFrameControlNames[kind]);
   }
-  return py::dict(
-      py::arg("number") = camera.camera(), py::arg("frame_length_ns") = steered.length().count(),
-      py::arg("shortest_ns") = steered.shortest().count(),
-      py::arg("longest_ns") = steered.longest().count(),
-      py::arg("granularity_ns") = camera.limits().granularity.count(),
-      py::arg("latency_frames") = camera.limits().latency_frames, py::arg("controls") = controls);
+  return dict({{"number", camera.camera()},
+               {"frame_length_ns", steered.length().count()},
+               {"shortest_ns", steered.shortest().count()},
+               {"longest_ns", steered.longest().count()},
+               {"granularity_ns", camera.limits().granularity.count()},
+               {"latency_frames", camera.limits().latency_frames},
+               {"controls", controls}});
 }
 
 void report_failure(HostPort& port, const std::string& why) {
-  if (port.steers()) throw py::value_error("failed(): of a capture_alignment use camera.report()");
+  if (port.steers()) throw_value_error("failed(): of a capture_alignment use camera.report()");
   port.get();
   port.outcome.failed(port.exchanges, why);
 }
 
 // The members in the order of SessionDelays; the slave is the host.
 void report_delays(HostPort& port, std::uint32_t pass, std::array<std::int64_t, 7> ns) {
-  if (port.steers()) throw py::value_error("report_delays(): of a host_sync alone");
+  if (port.steers()) throw_value_error("report_delays(): of a host_sync alone");
   Host& host = port.get();
-  if (host.id() == 0) throw py::value_error("report_delays(): of a slave; this is the master");
-  if (pass == 0) throw py::value_error("pass_number: found 0, allowed: from 1");
+  if (host.id() == 0) throw_value_error("report_delays(): of a slave; this is the master");
+  if (pass == 0) throw_value_error("pass_number: found 0, allowed: from 1");
   host.report_delays({.slave = host.id(),
                       .pass = pass,
                       .begin = SteadyTime(Nanoseconds(ns[0])),
@@ -503,29 +507,35 @@ void report_delays(HostPort& port, std::uint32_t pass, std::array<std::int64_t, 
                       .set = Nanoseconds(ns[6])});
 }
 
+std::optional<std::pair<double, double>> stored_frequency(const HostPort& port) {
+  const std::optional<StoredFrequency> stored = port.get().stored_frequency();
+  if (!stored) return std::nullopt;
+  return std::pair(stored->ppb, stored->error_ppb);
+}
+
+void report_camera(HostPort& port, std::uint32_t place, bool aligned, const std::string& message) {
+  port.get();
+  port.cameras.at(place).report(aligned, message);
+}
+
 }  // namespace
 
-void bind_host_port(py::module_& module) {
-  py::class_<HostPort, std::shared_ptr<HostPort>>(module, "HostPort")
-      .def_property_readonly("id", [](const HostPort& port) { return port.get().id(); })
-      .def("steady_ns",
-           [](const HostPort& port) { return nanoseconds_of(port.get().steady_clock().now()); })
-      .def("random", [](const HostPort& port) { return port.get().random_uniform(); })
-      .def("has_card", [](const HostPort& port) { return port.get().hardware_clock() != nullptr; })
-      .def("stored_frequency",
-           [](const HostPort& port) -> std::optional<std::pair<double, double>> {
-             const std::optional<StoredFrequency> stored = port.get().stored_frequency();
-             if (!stored) return std::nullopt;
-             return std::pair(stored->ppb, stored->error_ppb);
-           })
-      .def("failed", &report_failure)
-      .def("report_delays", &report_delays)
-      .def("camera", &camera_facts)
-      .def("report",
-           [](HostPort& port, std::uint32_t place, bool aligned, const std::string& message) {
-             port.get();
-             port.cameras.at(place).report(aligned, message);
-           });
+void bind_host_port(const Object& module) {
+  add_class<HostPort>(
+      module, "simbench._simbench.HostPort",
+      {.properties = {property("id", [](const HostPort& port) { return port.get().id(); })},
+       .methods = {
+           method("steady_ns",
+                  [](const HostPort& port) {
+                    return nanoseconds_of(port.get().steady_clock().now());
+                  }),
+           method("random", [](const HostPort& port) { return port.get().random_uniform(); }),
+           method("has_card",
+                  [](const HostPort& port) { return port.get().hardware_clock() != nullptr; }),
+           method("stored_frequency", callable<&stored_frequency>),
+           method("failed", callable<&report_failure>),
+           method("report_delays", callable<&report_delays>),
+           method("camera", callable<&camera_facts>), method("report", callable<&report_camera>)}});
 }
 
 }  // namespace simbench::python

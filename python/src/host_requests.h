@@ -5,10 +5,8 @@
 //
 //   const HostRequest request = host_request(tuple, port);   // with the GIL
 //   const HostAnswer answer = co_await answered(request, port);
-//   const py::object value = python_value(answer);           // with the GIL
+//   const Object value = python_value(answer);           // with the GIL
 #pragma once
-
-#include <pybind11/pybind11.h>
 
 #include <cstdint>
 #include <deque>
@@ -20,10 +18,9 @@
 #include "algorithms/capture_alignment/steered_camera.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/ports/host.h"
+#include "python/src/object.h"
 
 namespace simbench::python {
-
-namespace py = pybind11;
 
 // The host of a run as Python sees it, shared by the coroutines of that host. It outlives the run
 // if the algorithm keeps it, but has no host then. That of a capture alignment has the host's
@@ -82,10 +79,10 @@ struct ExchangeReply {
 using HostAnswer = std::variant<std::monostate, std::int64_t, bool, ReceivedMessage, ExchangeReply,
                                 CrossStamp, SteeredFrame>;
 
-// Throws py::error_already_set or std::exception for a request that is none.
-HostRequest host_request(const py::handle& request, const HostPort& port);
+// Throws PythonError or std::exception for a request that is none.
+HostRequest host_request(const Object& request, const HostPort& port);
 Task<HostAnswer> answered(HostRequest request, SharedPort port);
-py::object python_value(const HostAnswer& answer);
+Object python_value(const HostAnswer& answer);
 
 // The other end of kExchange: answers the questions of a client with the own clock's times, until
 // it says that it has done (or for ever).
@@ -93,6 +90,6 @@ Task<void> answer_questions(Host& host, PeerId client);
 Task<void> say_done(Host& host, PeerId server);
 
 // Parts of simbench/host.py that take no time.
-void bind_host_port(py::module_& module);
+void bind_host_port(const Object& module);
 
 }  // namespace simbench::python

@@ -1,8 +1,6 @@
 // host_sync in Python: `async def` functions for the slaves and, if it has one, for the master.
 #include "algorithms/ports/host_sync.h"
 
-#include <pybind11/pybind11.h>
-
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,7 +19,7 @@ class PythonHostSync final : public HostSync {
   PythonHostSync(AlgorithmDefinition client, AlgorithmDefinition server,
                  const Parameters& parameters)
       : client_(std::move(client)), server_(std::move(server)), parameters_(parameters) {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     keywords_of(*client_, parameters_);  // refuses what is no whole number
     if (parameters_.all().contains(kWarmUp)) warm_up_ = from_seconds(parameters_.number(kWarmUp));
   }
@@ -57,12 +55,11 @@ class PythonHostSync final : public HostSync {
 
 }  // namespace
 
-void register_python_host_sync(const py::dict& definition) {
+void register_python_host_sync(const Object& definition) {
   const auto client = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
   AlgorithmDefinition server;
   if (!definition["server"].is_none()) {
-    server = std::make_shared<const PythonAlgorithm>(
-        algorithm_of(definition["server"].cast<py::dict>()));
+    server = std::make_shared<const PythonAlgorithm>(algorithm_of(definition["server"]));
   }
   replace_algorithm<HostSyncEntry>(
       {.info = client->info, .make = [client, server](const Parameters& parameters) {

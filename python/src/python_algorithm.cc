@@ -1,22 +1,12 @@
 #include "python/src/python_algorithm.h"
 
 #include <fmt/format.h>
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace simbench::python {
-
-SharedObject shared(py::object object) {
-  return {object.release().ptr(), [](PyObject* held) {
-            // After the interpreter there is nothing left to free.
-            if (held == nullptr || Py_IsInitialized() == 0) return;
-            const py::gil_scoped_acquire gil;
-            Py_DECREF(held);
-          }};
-}
 
 SharedObject python_exception_in(const std::exception& error) {
   if (const auto* failure = dynamic_cast<const PythonFailure*>(&error)) {
@@ -34,22 +24,25 @@ SharedObject python_exception_in(const std::exception& error) {
 
 namespace {
 
-ParameterSpec spec_of(const py::handle& parameter) {
-  const auto text = [&](const char* key) { return parameter[key].cast<std::string>(); };
+std::string text_in(const Object& dictionary, const char* key) {
+  return dictionary[key].as<std::string>();
+}
+
+ParameterSpec spec_of(const Object& parameter) {
   ParameterSpec spec;
-  spec.name = text("name");
-  spec.meaning = text("meaning");
-  spec.source = text("source");
-  const py::object fallback = parameter["default"];
-  if (py::isinstance<py::bool_>(fallback)) {
-    spec.fallback = fallback.cast<bool>();
-  } else if (py::isinstance<py::str>(fallback)) {
-    spec.fallback = fallback.cast<std::string>();
-    spec.choices = parameter["choices"].cast<std::vector<std::string>>();
+  spec.name = text_in(parameter, "name");
+  spec.meaning = text_in(parameter, "meaning");
+  spec.source = text_in(parameter, "source");
+  const Object fallback = parameter["default"];
+  if (PyBool_Check(fallback.get())) {
+    spec.fallback = fallback.as<bool>();
+  } else if (PyUnicode_Check(fallback.get())) {
+    spec.fallback = fallback.as<std::string>();
+    spec.choices = parameter["choices"].as<std::vector<std::string>>();
   } else {
-    spec.fallback = fallback.cast<double>();
-    spec.low = parameter["low"].cast<double>();
-    spec.high = parameter["high"].cast<double>();
+    spec.fallback = fallback.as<double>();
+    spec.low = parameter["low"].as<double>();
+    spec.high = parameter["high"].as<double>();
   }
   return spec;
 }
@@ -67,7 +60,8 @@ Need need_of(const std::string& name) {
                                                     {"host_stamps", Need::kHostStamps}};
   const auto found = needs.find(name);
   if (found != needs.end()) return found->second;
-  throw py::value_error(
+  throw_error(
+      PyExc_ValueError,
       fmt::format("needs: found '{}', allowed: hardware_stamps, pps, gnss, trigger_line, tsf, ftm, "
                   "frames, frame_control, polls, host_stamps",
                   name));
@@ -83,125 +77,93 @@ std::string prefix(const PythonAlgorithm& algorithm, int line) {
 }
 
 // The last line of the traceback that is in the algorithm's file; else that of its method.
-int line_of(const PythonAlgorithm& algorithm, const py::handle& traceback) {
+int line_of(const PythonAlgorithm& algorithm, const Object& exception) {
   int line = algorithm.line;
-  for (py::object at = py::reinterpret_borrow<py::object>(traceback); at && !at.is_none();
-       at = at.attr("tb_next")) {
-    const py::object code = at.attr("tb_frame").attr("f_code");
-    if (code.attr("co_filename").cast<std::string>() == algorithm.file) {
-      line = at.attr("tb_lineno").cast<int>();
+  for (Object at = exception.attribute("__traceback__"); !at.is_none();
+       at = at.attribute("tb_next")) {
+    const Object code = at.attribute("tb_frame").attribute("f_code");
+    if (code.attribute("co_filename").as<std::string>() == algorithm.file) {
+      line = at.attribute("tb_lineno").as<int>();
     }
   }
   return line;
 }
 
-// "ZeroDivisionError: division by zero"
-std::string exception_text(const py::handle& exception) {
-  const std::string type = py::str(py::type::handle_of(exception).attr("__name__"));
-  PyObject* const text = PyObject_Str(exception.ptr());
-  if (text == nullptr) {
-    PyErr_Clear();
-    return type;
-  }
-  const std::string message = py::reinterpret_steal<py::str>(text);
-  return message.empty() ? type : type + ": " + message;
-}
-
 }  // namespace
 
-PythonAlgorithm algorithm_of(const py::dict& definition) {
-  const auto text = [&](const char* key) { return definition[key].cast<std::string>(); };
+PythonAlgorithm algorithm_of(const Object& definition) {
   PythonAlgorithm algorithm;
-  algorithm.kind = text("kind");
-  algorithm.method = text("method");
-  algorithm.file = text("file");
-  algorithm.line = definition["line"].cast<int>();
-  algorithm.info.name = text("name");
+  algorithm.kind = text_in(definition, "kind");
+  algorithm.method = text_in(definition, "method");
+  algorithm.file = text_in(definition, "file");
+  algorithm.line = definition["line"].as<int>();
+  algorithm.info.name = text_in(definition, "name");
   algorithm.info.family = algorithm.info.name;
-  algorithm.info.summary = text("summary");
+  algorithm.info.summary = text_in(definition, "summary");
   algorithm.info.source = place(algorithm.file, algorithm.line);
-  for (const py::handle parameter : definition["parameters"]) {
+  for (const Object& parameter : definition["parameters"].as<std::vector<Object>>()) {
     algorithm.info.parameters.push_back(spec_of(parameter));
-    if (parameter["whole"].cast<bool>()) {
+    if (parameter["whole"].as<bool>()) {
       algorithm.whole.push_back(algorithm.info.parameters.back().name);
     }
   }
-  for (const py::handle need : definition["needs"]) {
-    algorithm.info.needs.push_back(need_of(need.cast<std::string>()));
+  for (const std::string& need : definition["needs"].as<std::vector<std::string>>()) {
+    algorithm.info.needs.push_back(need_of(need));
   }
   algorithm.make = shared(definition["make"]);
   algorithm.traits = shared(definition);
   return algorithm;
 }
 
-py::dict keywords_of(const PythonAlgorithm& algorithm, const Parameters& parameters) {
-  py::dict keywords;
+Object keywords_of(const PythonAlgorithm& algorithm, const Parameters& parameters) {
+  Object keywords = dict();
   for (const auto& [name, value] : parameters.all()) {
-    const py::str key(name);
-    if (const bool* flag = std::get_if<bool>(&value)) {
-      keywords[key] = py::bool_(*flag);
-    } else if (const auto* text = std::get_if<std::string>(&value)) {
-      keywords[key] = py::str(*text);
+    const double* const number = std::get_if<double>(&value);
+    if (number == nullptr || std::ranges::count(algorithm.whole, name) == 0) {
+      const char* const key = name.c_str();
+      std::visit([&](const auto& held) { keywords.set(key, held); }, value);
+    } else if (*number == std::floor(*number) && std::abs(*number) < 9e15) {
+      keywords.set(name.c_str(), static_cast<std::int64_t>(*number));
     } else {
-      const double number = std::get<double>(value);
-      if (std::ranges::count(algorithm.whole, name) == 0) {
-        keywords[key] = py::float_(number);
-      } else if (number == std::floor(number) && std::abs(number) < 9e15) {
-        keywords[key] = py::int_(static_cast<std::int64_t>(number));
-      } else {
-        throw ParameterError(
-            name, fmt::format("parameter \"{}\" is {}; allowed: a whole number", name, number));
-      }
+      throw ParameterError(
+          name, fmt::format("parameter \"{}\" is {}; allowed: a whole number", name, *number));
     }
   }
   return keywords;
 }
 
-py::object make_instance(const PythonAlgorithm& algorithm, const Parameters& parameters) {
-  const py::dict keywords = keywords_of(algorithm, parameters);
-  PyObject* const made = PyObject_Call(algorithm.make.get(), py::tuple(0).ptr(), keywords.ptr());
+Object make_instance(const PythonAlgorithm& algorithm, const Object& keywords) {
+  const Object nothing = python_tuple({});
+  PyObject* const made = PyObject_Call(algorithm.make.get(), nothing.get(), keywords.get());
   if (made == nullptr) throw_python_failure(algorithm);
-  return py::reinterpret_steal<py::object>(made);
+  return Object::owned(made);
 }
 
-SharedObject method_of(const PythonAlgorithm& algorithm, const py::object& object,
-                       const char* name) {
-  PyObject* const method = PyObject_GetAttrString(object.ptr(), name);
+SharedObject method_of(const PythonAlgorithm& algorithm, const Object& object, const char* name) {
+  PyObject* const method = PyObject_GetAttrString(object.get(), name);
   if (method == nullptr) throw_python_failure(algorithm);
-  return shared(py::reinterpret_steal<py::object>(method));
+  return shared(Object::owned(method));
 }
 
 bool has_trait(const PythonAlgorithm& algorithm, const char* name) {
-  const py::handle traits(algorithm.traits.get());
-  return traits.contains(name) && traits[name].cast<bool>();
+  const Object traits = Object::borrowed(algorithm.traits.get());
+  return traits.contains(name) && traits[name].as<bool>();
+}
+
+void throw_python_failure(const PythonAlgorithm& algorithm, const PythonError& raised) {
+  const Object exception = raised.exception();
+  throw PythonFailure(
+      fmt::format("{}: {}", prefix(algorithm, line_of(algorithm, exception)), raised.what()),
+      shared(exception));
 }
 
 void throw_python_failure(const PythonAlgorithm& algorithm) {
-  py::error_already_set raised;  // takes the error over
-  const py::object exception = raised.value();
-  if (raised.trace()) PyException_SetTraceback(exception.ptr(), raised.trace().ptr());
-  throw PythonFailure(fmt::format("{}: {}", prefix(algorithm, line_of(algorithm, raised.trace())),
-                                  exception_text(exception)),
-                      shared(exception));
+  throw_python_failure(algorithm, PythonError::raised());
 }
 
 void throw_misuse(const PythonAlgorithm& algorithm, const std::string& text) {
   const std::string message = fmt::format("{} {}", prefix(algorithm, algorithm.line), text);
-  const py::object type = py::reinterpret_borrow<py::object>(PyExc_ValueError);
-  throw PythonFailure(message, shared(type(message)));
-}
-
-std::string shown(PyObject* object) {
-  if (object == Py_None) return "None";
-  const std::string type = py::str(py::type::handle_of(object).attr("__name__"));
-  PyObject* const text = PyObject_Repr(object);
-  if (text == nullptr) {
-    PyErr_Clear();
-    return type;
-  }
-  const std::string value = py::reinterpret_steal<py::str>(text);
-  constexpr std::size_t kShort = 40;
-  return value.size() > kShort ? "a " + type : fmt::format("{} ({})", value, type);
+  throw PythonFailure(message, shared(Object::borrowed(PyExc_ValueError)(message)));
 }
 
 }  // namespace simbench::python

@@ -12,12 +12,10 @@
 // PythonFailure, one line that names class, file and line; evaluation adds pipeline and seed. It is
 // an InputError, as the mistake is the user's, and ends the run.
 //
-//   const py::gil_scoped_acquire gil;
-//   const py::object made = make_instance(algorithm, parameters);
+//   const WithGil gil;
+//   const Object made = make_instance(algorithm, keywords_of(algorithm, parameters));
 //   if (result == nullptr) throw_python_failure(algorithm);
 #pragma once
-
-#include <pybind11/pybind11.h>
 
 #include <exception>
 #include <memory>
@@ -26,15 +24,10 @@
 
 #include "algorithms/parameters.h"
 #include "algorithms/registry.h"
+#include "python/src/object.h"
 #include "scenarios/loader.h"
 
 namespace simbench::python {
-
-namespace py = pybind11;
-
-// An object that may be dropped on any thread, with or without the GIL, and after the interpreter.
-using SharedObject = std::shared_ptr<PyObject>;
-SharedObject shared(py::object object);
 
 class PythonFailure : public scenarios::InputError {
  public:
@@ -62,20 +55,18 @@ struct PythonAlgorithm {
 };
 
 // From a decorator's dictionary: name, summary, parameters, needs, kind, method, file, line, make.
-PythonAlgorithm algorithm_of(const py::dict& definition);
+PythonAlgorithm algorithm_of(const Object& definition);
 
 // All of these need the GIL.
-py::dict keywords_of(const PythonAlgorithm& algorithm, const Parameters& parameters);
-py::object make_instance(const PythonAlgorithm& algorithm, const Parameters& parameters);
-SharedObject method_of(const PythonAlgorithm& algorithm, const py::object& object,
-                       const char* name);
+Object keywords_of(const PythonAlgorithm& algorithm, const Parameters& parameters);
+Object make_instance(const PythonAlgorithm& algorithm, const Object& keywords);
+SharedObject method_of(const PythonAlgorithm& algorithm, const Object& object, const char* name);
 // Whether the class says so: `relative = True`.
 bool has_trait(const PythonAlgorithm& algorithm, const char* name);
+[[noreturn]] void throw_python_failure(const PythonAlgorithm& algorithm, const PythonError& raised);
 // The error that Python has set.
 [[noreturn]] void throw_python_failure(const PythonAlgorithm& algorithm);
 // What a method returned or did: "returned None; expected ...".
 [[noreturn]] void throw_misuse(const PythonAlgorithm& algorithm, const std::string& text);
-// Its type, with its value where that is short.
-std::string shown(PyObject* object);
 
 }  // namespace simbench::python

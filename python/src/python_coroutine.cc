@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clocks/disciplined_clock.h"
+#include "python/src/binding.h"
 
 namespace simbench::python {
 namespace {
@@ -17,44 +18,39 @@ class PythonCoroutine {
   PythonCoroutine(AlgorithmDefinition algorithm, SharedPort port, const Parameters& parameters,
                   std::optional<std::uint32_t> number)
       : algorithm_(std::move(algorithm)), port_(std::move(port)) {
-    const py::gil_scoped_acquire gil;
-    const py::dict settings = keywords_of(*algorithm_, parameters);
-    PyObject* const made = PyObject_CallFunctionObjArgs(
-        algorithm_->make.get(), py::cast(port_).ptr(), settings.ptr(),
-        (number ? py::object(py::int_(*number)) : py::object(py::none())).ptr(), nullptr);
-    if (made == nullptr) throw_python_failure(*algorithm_);
-    coroutine_ = shared(py::reinterpret_steal<py::object>(made));
+    const WithGil gil;
+    try {
+      coroutine_ = shared(Object::borrowed(algorithm_->make.get())(
+          port_, keywords_of(*algorithm_, parameters), number));
+    } catch (const PythonError& raised) {
+      throw_python_failure(*algorithm_, raised);
+    }
   }
 
   // Lets Python go on with the answer to what it awaited.
   Next go_on(const HostAnswer& answer) {
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     return next_after([&] { return sent(python_value(answer)); });
   }
 
   // Lets it go on with an error.
   Next fail(const std::string& what) {
-    const py::gil_scoped_acquire gil;
-    const py::object type = py::reinterpret_borrow<py::object>(PyExc_ValueError);
-    return next_after([&] { return thrown(type(what)); });
+    const WithGil gil;
+    return next_after([&] { return thrown(value_error(what)); });
   }
 
  private:
   // A request that is none is an error where Python awaits it, which it may handle.
   template <class Resume>
   Next next_after(const Resume& resume) {
-    std::optional<py::object> yielded = resume();
+    std::optional<Object> yielded = resume();
     for (int refused = 0; yielded; ++refused) {
       try {
         return host_request(*yielded, *port_);
-      } catch (py::error_already_set& error) {
-        yielded = thrown(error.value());
-      } catch (const py::builtin_exception& error) {
-        error.set_error();
-        yielded = thrown(py::error_already_set().value());
+      } catch (const PythonError& error) {
+        yielded = thrown(error.exception());
       } catch (const std::exception& error) {
-        const py::object type = py::reinterpret_borrow<py::object>(PyExc_ValueError);
-        yielded = thrown(type(error.what()));
+        yielded = thrown(value_error(error.what()));
       }
       constexpr int kMostRefused = 1000;
       if (refused > kMostRefused) throw_misuse(*algorithm_, "awaits no operation again and again");
@@ -62,18 +58,24 @@ class PythonCoroutine {
     return std::nullopt;
   }
 
-  std::optional<py::object> sent(const py::object& value) {
-    PyObject* result = nullptr;
-    const PySendResult outcome = PyIter_Send(coroutine_.get(), value.ptr(), &result);
-    if (outcome == PYGEN_ERROR) throw_python_failure(*algorithm_);
-    py::object owned = py::reinterpret_steal<py::object>(result);
-    if (outcome == PYGEN_RETURN) return std::nullopt;
-    return owned;
+  static Object value_error(const std::string& what) {
+    return Object::borrowed(PyExc_ValueError)(what);
   }
 
-  std::optional<py::object> thrown(const py::object& exception) {
-    PyObject* const result = PyObject_CallMethod(coroutine_.get(), "throw", "O", exception.ptr());
-    if (result != nullptr) return py::reinterpret_steal<py::object>(result);
+  std::optional<Object> sent(const Object& value) {
+    static const SharedObject name = shared(Object::owned(PyUnicode_InternFromString("send")));
+    return resumed(name, value);
+  }
+  std::optional<Object> thrown(const Object& exception) {
+    static const SharedObject name = shared(Object::owned(PyUnicode_InternFromString("throw")));
+    return resumed(name, exception);
+  }
+
+  // What Python awaits then; nothing if it has returned.
+  std::optional<Object> resumed(const SharedObject& method, const Object& value) {
+    PyObject* const result =
+        PyObject_CallMethodObjArgs(coroutine_.get(), method.get(), value.get(), nullptr);
+    if (result != nullptr) return Object::owned(result);
     if (PyErr_ExceptionMatches(PyExc_StopIteration) == 0) throw_python_failure(*algorithm_);
     PyErr_Clear();
     return std::nullopt;

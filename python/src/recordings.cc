@@ -1,5 +1,4 @@
 // Recordings of real cameras for the package: inspection and diagnosis.
-#include <pybind11/stl.h>
 
 #include <bit>
 #include <cstddef>
@@ -15,14 +14,13 @@
 #include "app/stream_run.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/frames/camera_statistics.h"
+#include "python/src/binding.h"
 #include "python/src/bindings.h"
 #include "python/src/rows.h"
 #include "python/src/work.h"
 #include "reports/page/diagnose_page.h"
 #include "reports/recordings/diagnose_report.h"
 #include "reports/recordings/inspect_report.h"
-
-namespace py = pybind11;
 
 namespace simbench::python {
 namespace {
@@ -40,13 +38,13 @@ struct DiagnosedFiles {
   std::vector<std::string> notes{};
 };
 
-RecordedStreams streams_of(const std::vector<std::string>& files, const py::object& on_progress) {
+RecordedStreams streams_of(const std::vector<std::string>& files, const Object& on_progress) {
   return watched<RecordedStreams>(on_progress,
                                   [&](const Progress&) { return app::recorded_streams(files); });
 }
 
 std::shared_ptr<InspectedFiles> inspect_files(const std::vector<std::string>& files,
-                                              const py::object& on_progress) {
+                                              const Object& on_progress) {
   auto inspected = std::make_shared<InspectedFiles>();
   inspected->recorded = streams_of(files, on_progress);
   inspected->inspections = app::inspected(files, {});
@@ -90,11 +88,11 @@ Rows stamped_frames(const InspectedFiles& of, const std::vector<std::string>& de
   return Rows(std::move(cells), std::move(fields), row_bytes);
 }
 
-py::list streams_list(const InspectedFiles& of) {
-  py::list streams;
+std::vector<Object> streams_list(const InspectedFiles& of) {
+  std::vector<Object> streams;
   for (const RecordedStream& stream : of.recorded.streams) {
-    streams.append(py::dict(py::arg("camera") = stream.camera, py::arg("host") = stream.host,
-                            py::arg("stream") = stream.stream));
+    streams.push_back(
+        dict({{"camera", stream.camera}, {"host", stream.host}, {"stream", stream.stream}}));
   }
   return streams;
 }
@@ -102,7 +100,7 @@ py::list streams_list(const InspectedFiles& of) {
 std::shared_ptr<DiagnosedFiles> diagnose_files(const std::vector<std::string>& files,
                                                std::optional<double> rate_hz, bool one_host,
                                                const std::vector<std::string>& clock_logs,
-                                               const py::object& on_progress) {
+                                               const Object& on_progress) {
   RecordedStreams rig = streams_of(files, on_progress);
   auto diagnosed = std::make_shared<DiagnosedFiles>();
   diagnosed->files = files;
@@ -122,33 +120,44 @@ std::string page_of(const DiagnosedFiles& of, const std::vector<std::string>& co
 }
 
 }  // namespace
-}  // namespace simbench::python
 
-void bind_recordings(pybind11::module_& module) {
-  using namespace simbench;
-  using python::DiagnosedFiles;
-  using python::InspectedFiles;
-  py::class_<InspectedFiles, std::shared_ptr<InspectedFiles>>(module, "Inspection")
-      .def_property_readonly("notes", [](const InspectedFiles& of) { return of.recorded.notes; })
-      .def_property_readonly("streams", &python::streams_list)
-      .def("json", [](const InspectedFiles& of) { return reports::inspect_json(of.inspections); })
-      .def(
-          "text",
-          [](const InspectedFiles& of) { return plain(reports::inspect_document(of.inspections)); })
-      .def("frames", &python::stamped_frames, py::call_guard<py::gil_scoped_release>());
-  py::class_<DiagnosedFiles, std::shared_ptr<DiagnosedFiles>>(module, "Diagnosis")
-      .def_readonly("notes", &DiagnosedFiles::notes)
-      .def("json",
-           [](const DiagnosedFiles& of) { return reports::diagnose_json(of.diagnosis, of.files); })
-      .def("text",
-           [](const DiagnosedFiles& of) { return plain(reports::diagnose_document(of.diagnosis)); })
-      .def("html",
-           [](const DiagnosedFiles& of) {
-             return html(reports::diagnose_document(of.diagnosis).blocks);
-           })
-      .def("head",
-           [](const DiagnosedFiles& of) { return reports::diagnose_document(of.diagnosis).head; })
-      .def("page", &python::page_of);
-  module.def("inspect_files", &python::inspect_files);
-  module.def("diagnose_files", &python::diagnose_files);
+void bind_recordings(const Object& module) {
+  using Inspected = InspectedFiles;
+  add_class<Inspected>(
+      module, "simbench._simbench.Inspection",
+      {.properties = {property("notes", [](const Inspected& of) { return of.recorded.notes; }),
+                      property("streams", callable<&streams_list>)},
+       .methods = {
+           method("json",
+                  [](const Inspected& of) { return reports::inspect_json(of.inspections); }),
+           method("text",
+                  [](const Inspected& of) {
+                    return plain(reports::inspect_document(of.inspections));
+                  }),
+           method("frames", callable<&stamped_frames>)}});
+  using Diagnosed = DiagnosedFiles;
+  add_class<Diagnosed>(
+      module, "simbench._simbench.Diagnosis",
+      {.properties = {property("notes", [](const Diagnosed& of) { return of.notes; })},
+       .methods = {method("json",
+                          [](const Diagnosed& of) {
+                            return reports::diagnose_json(of.diagnosis, of.files);
+                          }),
+                   method("text",
+                          [](const Diagnosed& of) {
+                            return plain(reports::diagnose_document(of.diagnosis));
+                          }),
+                   method("html",
+                          [](const Diagnosed& of) {
+                            return html(reports::diagnose_document(of.diagnosis).blocks);
+                          }),
+                   method("head",
+                          [](const Diagnosed& of) {
+                            return reports::diagnose_document(of.diagnosis).head;
+                          }),
+                   method("page", callable<&page_of>)}});
+  add_functions(module, {function("inspect_files", callable<&inspect_files>),
+                         function("diagnose_files", callable<&diagnose_files>)});
 }
+
+}  // namespace simbench::python

@@ -4,7 +4,8 @@
 
 #include <array>
 #include <cstddef>
-#include <cstring>
+
+#include "python/src/binding.h"
 
 namespace simbench::python {
 
@@ -47,7 +48,7 @@ PyObject* made_record(PyTypeObject* type, PyObject* arguments, PyObject* keyword
                                   &(values.*places)...) == 0) {
     return nullptr;
   }
-  PyObject* const object = type->tp_alloc(type, 0);
+  PyObject* const object = PyType_GenericAlloc(type, 0);
   if (object == nullptr) return nullptr;
   auto& record = *reinterpret_cast<Record*>(object);
   ((record.*places = values.*places), ...);
@@ -81,7 +82,7 @@ PyObject* show_frame(PyObject* object) {
                               record.source, record.stamp_ns, record.arrival_ns, record.sensor_ns);
 }
 
-PyTypeObject* made_type(py::module_& module, const char* name, std::size_t size, const char* text,
+PyTypeObject* made_type(const Object& module, const char* name, std::size_t size, const char* text,
                         PyMemberDef* members, newfunc make, reprfunc show) {
   std::array<PyType_Slot, 5> slots = {{{Py_tp_doc, const_cast<char*>(text)},
                                        {Py_tp_members, members},
@@ -89,15 +90,22 @@ PyTypeObject* made_type(py::module_& module, const char* name, std::size_t size,
                                        {Py_tp_repr, reinterpret_cast<void*>(show)},
                                        {0, nullptr}}};
   PyType_Spec spec = {name, static_cast<int>(size), 0, Py_TPFLAGS_DEFAULT, slots.data()};
-  PyObject* const type = PyType_FromSpec(&spec);
-  if (type == nullptr) throw py::error_already_set();
-  module.add_object(std::strrchr(name, '.') + 1, type);
-  return reinterpret_cast<PyTypeObject*>(type);
+  return add_type(module, spec);
 }
 
 }  // namespace
 
-void bind_records(py::module_& module) {
+RecordFunction record_function(const SharedObject& method) {
+  static const SharedObject bound = shared(imported("types").attribute("MethodType"));
+  const Object whole = Object::borrowed(method.get());
+  if (reinterpret_cast<PyObject*>(Py_TYPE(method.get())) != bound.get()) {
+    return {method, python_tuple({Object::none()}), 0};
+  }
+  return {shared(whole.attribute("__func__")),
+          python_tuple({whole.attribute("__self__"), Object::none()}), 1};
+}
+
+void bind_records(const Object& module) {
   SampleRecord::type = made_type(module, "simbench.Sample", sizeof(SampleRecord),
                                  "A frame of one camera, as stamp() gets it.",
                                  sample_members.data(), &new_sample, &show_sample);

@@ -1,17 +1,15 @@
 // The small objects that algorithms in Python get for each frame: simbench.Sample, simbench.Frame.
 //
 // They are plain structs behind read-only attributes, as a frame may not cost more than a method's
-// call. An object that the algorithm has not kept is used again for the next frame.
+// call. An object that the algorithm has not kept is used again for the next frame, and so are the
+// arguments of the call.
 //
-//   RecordReference reference;
-//   SampleRecord& record = renewed<SampleRecord>(reference);   // with the GIL
-//   record.sensor_ns = 5;
-//   PyObject_CallOneArg(method, reference.get());
+//   RecordMethod<SampleRecord> stamp(method);   // with the GIL
+//   stamp.renewed().sensor_ns = 5;
+//   PyObject* const result = stamp.called();
 #pragma once
 
-#include <pybind11/pybind11.h>
-
-#include <new>
+#include <utility>
 
 #include "python/src/python_algorithm.h"
 
@@ -39,37 +37,47 @@ struct FrameRecordObject {
 };
 
 // Adds both types to the module, before anything is renewed.
-void bind_records(py::module_& module);
+void bind_records(const Object& module);
 
-// Owns a record of one kind; may be dropped on any thread.
-class RecordReference {
+// What an algorithm's method and its object are called by: a function, and the arguments that come
+// before the record. A method that is bound needs no other arguments made for each call.
+struct RecordFunction {
+  SharedObject function;
+  Object arguments;  // a tuple, none in the record's place, which is the last
+  Py_ssize_t place = 0;
+};
+RecordFunction record_function(const SharedObject& method);
+
+// Calls a method with one record after another. May be dropped on any thread; the rest is with the
+// GIL.
+template <class Record>
+class RecordMethod {
  public:
-  RecordReference() = default;
-  RecordReference(const RecordReference&) = delete;
-  RecordReference& operator=(const RecordReference&) = delete;
-  ~RecordReference() { shared(py::reinterpret_steal<py::object>(object_)); }
-
-  PyObject* get() const { return object_; }
-  // With the GIL.
-  void set(PyObject* object) {
-    Py_XDECREF(object_);
-    object_ = object;
+  RecordMethod() = default;
+  explicit RecordMethod(const SharedObject& method) {
+    RecordFunction made = record_function(method);
+    function_ = std::move(made.function);
+    arguments_ = shared(std::move(made.arguments));
+    place_ = made.place;
   }
+
+  // The last record if nobody else has it, else a new one.
+  Record& renewed() {
+    if (record_ == nullptr || Py_REFCNT(record_) > 1) {
+      record_ = Object::owned(PyType_GenericAlloc(Record::type, 0)).release();
+      if (PyTuple_SetItem(arguments_.get(), place_, record_) != 0) throw PythonError::raised();
+    }
+    return *reinterpret_cast<Record*>(record_);
+  }
+
+  // What it returns, for the caller to own; null: it has raised an error.
+  PyObject* called() const { return PyObject_Call(function_.get(), arguments_.get(), nullptr); }
 
  private:
-  PyObject* object_ = nullptr;
+  SharedObject function_;
+  SharedObject arguments_;
+  Py_ssize_t place_ = 0;
+  PyObject* record_ = nullptr;  // which the arguments own
 };
-
-// The record itself if nobody else has it, else a new one. With the GIL.
-template <class Record>
-Record& renewed(RecordReference& reference) {
-  PyObject* object = reference.get();
-  if (object == nullptr || Py_REFCNT(object) > 1) {
-    object = Record::type->tp_alloc(Record::type, 0);
-    if (object == nullptr) throw std::bad_alloc();
-    reference.set(object);
-  }
-  return *reinterpret_cast<Record*>(object);
-}
 
 }  // namespace simbench::python

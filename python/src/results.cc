@@ -3,7 +3,6 @@
 #include "app/results.h"
 
 #include <fmt/format.h>
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,6 +17,7 @@
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/run_detail.h"
+#include "python/src/binding.h"
 #include "python/src/bindings.h"
 #include "python/src/rows.h"
 #include "python/src/run.h"
@@ -31,8 +31,6 @@
 #include "reports/results/summary_document.h"
 #include "scenarios/loader.h"
 
-namespace py = pybind11;
-
 namespace simbench::python {
 namespace {
 
@@ -41,7 +39,7 @@ using evaluation::Results;
 using scenarios::InputError;
 using scenarios::Scenario;
 
-std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_progress) {
+std::shared_ptr<Run> simulate(const RunRequest& request, const Object& on_progress) {
   auto run = std::make_shared<Run>();
   run->provenance.emplace();
   run->provenance->command = request.command;
@@ -83,7 +81,7 @@ std::shared_ptr<Run> load_archive(const std::string& path) {
 
 std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
                                      const std::vector<std::string>& pipelines,
-                                     const py::object& on_progress) {
+                                     const Object& on_progress) {
   auto run = std::make_shared<Run>();
   run->recorded = std::make_shared<app::RecordedRun>(app::recorded_run(inputs, {}, pipelines));
   const app::RecordedRun& recorded = *run->recorded;
@@ -102,7 +100,7 @@ std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
 }
 
 // As the commands have it: a recorded run's has no levers, which need other worlds.
-const reports::ResultsAnswer& known_answer(Run& run, const py::object& on_progress) {
+const reports::ResultsAnswer& known_answer(Run& run, const Object& on_progress) {
   if (!run.answer && (run.recorded || !run.scenario)) {
     run.answer = reports::results_answer(run.results());
   }
@@ -116,7 +114,7 @@ const reports::ResultsAnswer& known_answer(Run& run, const py::object& on_progre
 
 // The text of `simbench run`, as long as `detail` says: "answer", "screen" or "all".
 std::string run_text(Run& run, const std::string& format, const std::string& detail,
-                     const py::object& on_progress) {
+                     const Object& on_progress) {
   const reports::ResultsAnswer& answer = known_answer(run, on_progress);
   const app::Detail shown = detail == "answer" ? app::Detail::kAnswer
                             : detail == "all"  ? app::Detail::kAll
@@ -126,22 +124,28 @@ std::string run_text(Run& run, const std::string& format, const std::string& det
                            answer);
 }
 
-std::string html_of(Run& run, const py::object& on_progress) {
+std::string html_of(Run& run, const Object& on_progress) {
   const scenarios::TableKind table =
       run.scenario ? run.scenario->evaluation.table : scenarios::TableKind::kPipelines;
   return reports::html(known_answer(run, on_progress).text) +
          reports::html(reports::summary_blocks(run.results(), table));
 }
 
-py::list overview_of(const Run& run) {
-  py::list rows;
+std::vector<Object> overview_of(const Run& run) {
+  std::vector<Object> rows;
   for (const auto& row : reports::overview_rows(run.results())) {
-    rows.append(py::dict(py::arg("pipeline") = row.row->pipeline, py::arg("word") = row.word,
-                         py::arg("median_ms") = row.series->median,
-                         py::arg("p05_ms") = row.series->p05, py::arg("p95_ms") = row.series->p95,
-                         py::arg("published_ms") = row.published_ms));
+    rows.push_back(dict({{"pipeline", row.row->pipeline},
+                         {"word", row.word},
+                         {"median_ms", row.series->median},
+                         {"p05_ms", row.series->p05},
+                         {"p95_ms", row.series->p95},
+                         {"published_ms", row.published_ms}}));
   }
   return rows;
+}
+
+std::string ranked_name(const Run& run) {
+  return evaluation::ranked_metric(evaluation::ranking_of(run.results())).title;
 }
 
 void save(const Run& run, const std::string& folder) {
@@ -275,8 +279,8 @@ Rows frame_rows(evaluation::RunDetail detail) {
 }
 
 // With the number of the rig's cameras, of which the first are there.
-py::tuple frames(const Run& run, const std::string& pipeline, std::uint64_t seed,
-                 const py::object& on_progress) {
+Object frames(const Run& run, const std::string& pipeline, std::uint64_t seed,
+              const Object& on_progress) {
   check_frames(run, pipeline, seed);
   evaluation::RunDetail detail = watched<evaluation::RunDetail>(on_progress, [&](const Progress&) {
     const auto choices = evaluation::choose_pipelines(*run.scenario, {pipeline});
@@ -286,7 +290,8 @@ py::tuple frames(const Run& run, const std::string& pipeline, std::uint64_t seed
   check_same(run, detail);
   const std::size_t cameras = detail.camera_count;
   const std::size_t kept = detail.cameras.size();
-  return py::make_tuple(frame_rows(std::move(detail)), kept, cameras);
+  return python_tuple({made_instance(std::make_shared<Rows>(frame_rows(std::move(detail)))),
+                       to_python(kept), to_python(cameras)});
 }
 
 using Compared = std::shared_ptr<reports::Comparison>;
@@ -308,64 +313,63 @@ Compared compare_two(const Run& run, const std::string& a, const std::string& b,
       reports::compare_pipelines(run.archive, a, b, options));
 }
 
-void bind_run(py::module_& module) {
-  py::class_<RunRequest>(module, "RunRequest")
-      .def(py::init<>())
-      .def_readwrite("scenario", &RunRequest::scenario)
-      .def_readwrite("pipelines", &RunRequest::pipelines)
-      .def_readwrite("sets", &RunRequest::sets)
-      .def_readwrite("seeds", &RunRequest::seeds)
-      .def_readwrite("first_seed", &RunRequest::first_seed)
-      .def_readwrite("jobs", &RunRequest::jobs)
-      .def_readwrite("keep_pulses", &RunRequest::keep_pulses)
-      .def_readwrite("command", &RunRequest::command);
-  py::class_<Run, std::shared_ptr<Run>>(module, "Run")
-      .def_property_readonly("scenario", [](const Run& run) { return run.results().scenario; })
-      .def_property_readonly("path", [](const Run& run) { return run.archive.path; })
-      .def_property_readonly("first_seed", [](const Run& run) { return run.results().first_seed; })
-      .def_property_readonly("seed_count", [](const Run& run) { return run.results().seed_count; })
-      .def_property_readonly(
-          "is_clock_run",
-          [](const Run& run) { return run.results().kind == evaluation::ResultKind::kClockRuns; })
-      .def_property_readonly("notes", [](const Run& run) { return run.notes; })
-      .def_property_readonly(
-          "ranked_name",
-          [](const Run& run) {
-            return evaluation::ranked_metric(evaluation::ranking_of(run.results())).title;
-          })
-      .def_property_readonly("scenario_json",
-                             [](const Run& run) { return run.archive.scenario_json; })
-      .def("csv", [](const Run& run) { return reports::csv(run.results()); })
-      .def("tidy_csv", [](const Run& run) { return reports::tidy_csv(run.results()); })
-      .def("json", [](const Run& run) { return reports::json(run.results()); })
-      .def("text", &run_text)
-      .def("html", &html_of)
-      .def("overview", &overview_of)
-      .def("save", &save)
-      .def("frames", &frames);
-  module.def("simulate", &simulate);
-  module.def("load_archive", &load_archive);
-  module.def("score_recording", &score_recording);
+void bind_run(const Object& module) {
+  add_class<RunRequest>(
+      module, "simbench._simbench.RunRequest",
+      {.properties =
+           {field<&RunRequest::scenario>("scenario"), field<&RunRequest::pipelines>("pipelines"),
+            field<&RunRequest::sets>("sets"), field<&RunRequest::seeds>("seeds"),
+            field<&RunRequest::first_seed>("first_seed"), field<&RunRequest::jobs>("jobs"),
+            field<&RunRequest::keep_pulses>("keep_pulses"), field<&RunRequest::command>("command")},
+       .make = &default_new<RunRequest>});
+  add_class<Run>(
+      module, "simbench._simbench.Run",
+      {.properties =
+           {property("scenario", [](const Run& run) { return run.results().scenario; }),
+            property("path", [](const Run& run) { return run.archive.path; }),
+            property("first_seed", [](const Run& run) { return run.results().first_seed; }),
+            property("seed_count", [](const Run& run) { return run.results().seed_count; }),
+            property("is_clock_run",
+                     [](const Run& run) {
+                       return run.results().kind == evaluation::ResultKind::kClockRuns;
+                     }),
+            property("notes", [](const Run& run) { return run.notes; }),
+            property("ranked_name", callable<&ranked_name>),
+            property("scenario_json", [](const Run& run) { return run.archive.scenario_json; })},
+       .methods = {
+           method("csv", [](const Run& run) { return reports::csv(run.results()); }),
+           method("tidy_csv", [](const Run& run) { return reports::tidy_csv(run.results()); }),
+           method("json", [](const Run& run) { return reports::json(run.results()); }),
+           method("text", callable<&run_text>), method("html", callable<&html_of>),
+           method("overview", callable<&overview_of>), method("save", callable<&save>),
+           method("frames", callable<&frames>)}});
+  add_functions(module, {function("simulate", callable<&simulate>),
+                         function("load_archive", callable<&load_archive>),
+                         function("score_recording", callable<&score_recording>)});
 }
 
-void bind_comparison(py::module_& module) {
+void bind_comparison(const Object& module) {
   using reports::Comparison;
-  using reports::ComparisonOptions;
-  py::class_<ComparisonOptions>(module, "ComparisonOptions")
-      .def(py::init<>())
-      .def_readwrite("smallest_effect", &ComparisonOptions::smallest_effect)
-      .def_readwrite("by_index", &ComparisonOptions::by_index)
-      .def_readwrite("different_scenarios", &ComparisonOptions::different_scenarios)
-      .def_readwrite("pipelines", &ComparisonOptions::pipelines);
-  py::class_<Comparison, Compared>(module, "Comparison")
-      .def("csv", [](const Comparison& of) { return reports::comparison_csv(of); })
-      .def("json", [](const Comparison& of) { return reports::comparison_json(of); })
-      .def("text", [](const Comparison& of) { return plain(reports::comparison_document(of)); })
-      .def("html",
-           [](const Comparison& of) { return html(reports::comparison_document(of).blocks); });
-  module.def("compare_runs", &compare_runs);
-  module.def("compare_baseline", &compare_baseline);
-  module.def("compare_two", &compare_two);
+  using Options = reports::ComparisonOptions;
+  add_class<Options>(module, "simbench._simbench.ComparisonOptions",
+                     {.properties = {field<&Options::smallest_effect>("smallest_effect"),
+                                     field<&Options::by_index>("by_index"),
+                                     field<&Options::different_scenarios>("different_scenarios"),
+                                     field<&Options::pipelines>("pipelines")},
+                      .make = &default_new<Options>});
+  add_class<Comparison>(
+      module, "simbench._simbench.Comparison",
+      {.methods = {
+           method("csv", [](const Comparison& of) { return reports::comparison_csv(of); }),
+           method("json", [](const Comparison& of) { return reports::comparison_json(of); }),
+           method("text",
+                  [](const Comparison& of) { return plain(reports::comparison_document(of)); }),
+           method("html", [](const Comparison& of) {
+             return html(reports::comparison_document(of).blocks);
+           })}});
+  add_functions(module, {function("compare_runs", callable<&compare_runs>),
+                         function("compare_baseline", callable<&compare_baseline>),
+                         function("compare_two", callable<&compare_two>)});
 }
 
 }  // namespace
@@ -379,9 +383,9 @@ Scenario load_scenario(const RunRequest& request) {
                                         evaluation::AdHoc::kHostSyncToo));
 }
 
-}  // namespace simbench::python
-
-void bind_results(pybind11::module_& module) {
-  simbench::python::bind_run(module);
-  simbench::python::bind_comparison(module);
+void bind_results(const Object& module) {
+  bind_run(module);
+  bind_comparison(module);
 }
+
+}  // namespace simbench::python

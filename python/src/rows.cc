@@ -1,30 +1,43 @@
 #include "python/src/rows.h"
 
-#include <pybind11/pybind11.h>
-
 #include <cstdint>
 
+#include "python/src/binding.h"
 #include "python/src/bindings.h"
 
-namespace py = pybind11;
+namespace simbench::python {
+namespace {
 
-void bind_rows(pybind11::module_& module) {
-  using simbench::python::Rows;
-  py::class_<Rows>(module, "Rows", py::buffer_protocol())
-      .def_buffer([](Rows& rows) {
-        // Read-only: the buffer is never written through this pointer.
-        return py::buffer_info(static_cast<std::uint8_t*>(const_cast<void*>(rows.data())), 1,
-                               py::format_descriptor<std::uint8_t>::format(), 1,
-                               {static_cast<py::ssize_t>(rows.bytes())}, {py::ssize_t{1}}, true);
-      })
-      .def_property_readonly("row_bytes", &Rows::row_bytes)
-      .def_property_readonly(
-          "address", [](const Rows& rows) { return reinterpret_cast<std::uintptr_t>(rows.data()); })
-      .def_property_readonly("fields", [](const Rows& rows) {
-        py::list fields;
-        for (const auto& field : rows.fields()) {
-          fields.append(py::make_tuple(field.name, field.format, field.offset));
-        }
-        return fields;
-      });
+std::uintptr_t address_of(const Rows& rows) {
+  return reinterpret_cast<std::uintptr_t>(rows.data());
 }
+
+// NumPy's array interface: bytes that may only be read.
+Object interface_of(const Rows& rows) {
+  return dict({{"version", 3},
+               {"typestr", "|u1"},
+               {"shape", python_tuple({to_python(rows.bytes())})},
+               {"data", python_tuple({to_python(address_of(rows)), to_python(true)})}});
+}
+
+std::vector<Object> fields_of(const Rows& rows) {
+  std::vector<Object> fields;
+  for (const RowField& field : rows.fields()) {
+    fields.push_back(
+        python_tuple({to_python(field.name), to_python(field.format), to_python(field.offset)}));
+  }
+  return fields;
+}
+
+}  // namespace
+
+void bind_rows(const Object& module) {
+  add_class<Rows>(
+      module, "simbench._simbench.Rows",
+      {.properties = {property("row_bytes", [](const Rows& rows) { return rows.row_bytes(); }),
+                      property("address", callable<&address_of>),
+                      property("__array_interface__", callable<&interface_of>),
+                      property("fields", callable<&fields_of>)}});
+}
+
+}  // namespace simbench::python

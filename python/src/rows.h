@@ -1,7 +1,7 @@
 // Rows of equal layout that Python sees as an array, in the memory where they are.
 //
-// Python reads them through the buffer protocol; the array keeps them alive. simbench/tables.py
-// makes a NumPy array of a buffer and its fields.
+// Python reads them through NumPy's array interface; the array keeps them alive. simbench/tables.py
+// makes a NumPy array of the bytes and the fields.
 #pragma once
 
 #include <cstddef>

@@ -1,82 +1,81 @@
-#include <pybind11/stl.h>
-
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "algorithms/ports/stage.h"
 #include "evaluation/scoring/metrics.h"
+#include "python/src/binding.h"
 #include "python/src/bindings.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/loader.h"
 
-namespace py = pybind11;
-
+namespace simbench::python {
 namespace {
 
-py::list list_scenarios() {
-  py::list all;
-  for (const auto& each : simbench::scenarios::builtin_scenarios()) {
-    all.append(py::dict(py::arg("scenario") = each.name, py::arg("summary") = each.summary));
+std::vector<Object> list_scenarios() {
+  std::vector<Object> all;
+  for (const auto& each : scenarios::builtin_scenarios()) {
+    all.push_back(dict({{"scenario", each.name}, {"summary", each.summary}}));
   }
   return all;
 }
 
-py::list describe(const std::string& scenario) {
-  py::list lines;
-  for (const auto& line :
-       simbench::scenarios::describe(simbench::scenarios::load_scenario(scenario))) {
-    lines.append(py::dict(py::arg("pointer") = line.pointer, py::arg("value") = line.value,
-                          py::arg("unit") = line.unit, py::arg("meaning") = line.meaning,
-                          py::arg("source") = line.source));
+std::vector<Object> describe(const std::string& scenario) {
+  std::vector<Object> lines;
+  for (const auto& line : scenarios::describe(scenarios::load_scenario(scenario))) {
+    lines.push_back(dict({{"pointer", line.pointer},
+                          {"value", line.value},
+                          {"unit", line.unit},
+                          {"meaning", line.meaning},
+                          {"source", line.source}}));
   }
   return lines;
 }
 
 // The stages of a pipeline, in order: name and whether a pipeline may lack it.
-py::dict stages() {
-  py::dict all;
-  for (const simbench::StageInfo& stage : simbench::kPipelineStages)
-    all[stage.name] = stage.may_be_absent;
+Object stages() {
+  Object all = dict();
+  for (const StageInfo& stage : kPipelineStages) all.set(stage.name, stage.may_be_absent);
   return all;
 }
 
 // The pipelines of a scenario with these changes: name, and the algorithm of each stage that it
 // has.
-py::list pipelines_of(const std::string& scenario,
-                      const std::vector<std::pair<std::string, std::string>>& sets) {
-  std::vector<simbench::scenarios::Override> overrides;
+std::vector<Object> pipelines_of(const std::string& scenario,
+                                 const std::vector<std::pair<std::string, std::string>>& sets) {
+  std::vector<scenarios::Override> overrides;
   overrides.reserve(sets.size());
   for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
-  py::list all;
-  for (const auto& pipeline : simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
-    py::dict each;
-    each["name"] = pipeline.name;
-    for (const simbench::StageInfo& stage : simbench::kPipelineStages) {
-      const std::string& algorithm = simbench::at_stage(pipeline, stage.id);
-      if (!algorithm.empty()) each[stage.name] = algorithm;
+  std::vector<Object> all;
+  for (const auto& pipeline : scenarios::load_scenario(scenario, overrides).pipelines) {
+    Object each = dict({{"name", pipeline.name}});
+    for (const StageInfo& stage : kPipelineStages) {
+      const std::string& algorithm = at_stage(pipeline, stage.id);
+      if (!algorithm.empty()) each.set(stage.name, algorithm);
     }
-    all.append(each);
+    all.push_back(each);
   }
   return all;
 }
 
 // The metrics that are whole numbers.
-py::list counts() {
-  py::list names;
-  for (const auto& metric : simbench::evaluation::metrics()) {
-    if (metric.is_count()) names.append(metric.id);
+std::vector<std::string> counts() {
+  std::vector<std::string> names;
+  for (const auto& metric : evaluation::metrics()) {
+    if (metric.is_count()) names.emplace_back(metric.id);
   }
   return names;
 }
 
 }  // namespace
 
-void bind_scenarios(pybind11::module_& module) {
-  module.def("list_scenarios", &list_scenarios);
-  module.def("describe", &describe);
-  module.def("stages", &stages);
-  module.def("pipelines_of", &pipelines_of);
-  module.def("counts", &counts);
-  module.def("set_page_width", &simbench::reports::set_page_width);
+void bind_scenarios(const Object& module) {
+  add_functions(
+      module,
+      {function("list_scenarios", callable<&list_scenarios>),
+       function("describe", callable<&describe>), function("stages", callable<&stages>),
+       function("pipelines_of", callable<&pipelines_of>), function("counts", callable<&counts>),
+       function("set_page_width", callable<&reports::set_page_width>)});
 }
+
+}  // namespace simbench::python

@@ -9,8 +9,6 @@
 
 #include "app/interrupt.h"
 
-namespace py = pybind11;
-
 namespace simbench::python {
 namespace {
 
@@ -58,10 +56,9 @@ void do_work(WorkState& state, const std::function<void(const evaluation::Progre
 }
 
 // Returns what Python raised.
-std::exception_ptr look_after(const py::object& on_progress, std::uint64_t done,
-                              std::uint64_t total) {
+std::exception_ptr look_after(const Object& on_progress, std::uint64_t done, std::uint64_t total) {
   try {
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (PyErr_CheckSignals() != 0) throw PythonError::raised();
     if (total > 0 && !on_progress.is_none()) on_progress(done, total);
   } catch (...) {
     return std::current_exception();
@@ -70,9 +67,9 @@ std::exception_ptr look_after(const py::object& on_progress, std::uint64_t done,
 }
 
 // Until the work has ended. Returns what Python raised first.
-std::exception_ptr wait_for(WorkState& state, const py::object& on_progress) {
+std::exception_ptr wait_for(WorkState& state, const Object& on_progress) {
   std::exception_ptr raised;
-  const py::gil_scoped_release without_lock;
+  const WithoutGil without_lock;
   std::unique_lock lock(state.mutex);
   while (!state.ended) {
     state.ended_or_due.wait_for(lock, kPollInterval);
@@ -81,7 +78,7 @@ std::exception_ptr wait_for(WorkState& state, const py::object& on_progress) {
     const std::uint64_t total = state.total;
     lock.unlock();
     if (!raised) {
-      const py::gil_scoped_acquire with_lock;
+      const WithGil with_lock;
       raised = look_after(on_progress, done, total);
       if (raised) app::InterruptHandler::set(true);
     }
@@ -92,14 +89,14 @@ std::exception_ptr wait_for(WorkState& state, const py::object& on_progress) {
 
 }  // namespace
 
-void run_watched(const py::object& on_progress,
+void run_watched(const Object& on_progress,
                  const std::function<void(const evaluation::Progress&)>& work) {
   const RunningWork running;
   WorkState state;
   std::thread worker(do_work, std::ref(state), std::cref(work));
   const std::exception_ptr raised = wait_for(state, on_progress);
   {
-    const py::gil_scoped_release without_lock;
+    const WithoutGil without_lock;
     worker.join();
   }
   if (raised) std::rethrow_exception(raised);

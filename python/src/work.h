@@ -10,22 +10,21 @@
 //       });
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <functional>
 #include <optional>
 #include <utility>
 
 #include "evaluation/run/evaluate.h"
+#include "python/src/object.h"
 
 namespace simbench::python {
 
 // `on_progress`: called with (done, total), or None. Throws what the work throws.
-void run_watched(const pybind11::object& on_progress,
+void run_watched(const Object& on_progress,
                  const std::function<void(const evaluation::Progress&)>& work);
 
 template <class Result, class Work>
-Result watched(const pybind11::object& on_progress, const Work& work) {
+Result watched(const Object& on_progress, const Work& work) {
   std::optional<Result> result;
   run_watched(on_progress,
               [&](const evaluation::Progress& progress) { result.emplace(work(progress)); });

@@ -136,6 +136,33 @@ class ProgressTest(unittest.TestCase):
         self.assertRegex(command.python(code).stderr, r"\d+/\d+")
 
 
+class CommandTest(unittest.TestCase):
+    """`python3 -m simbench`, which pip installs as `simbench`, in what depends on where a program is."""
+
+    def run_module(self, *arguments):
+        return subprocess.run([sys.executable, "-m", "simbench", *arguments], capture_output=True,
+                              text=True, stdin=subprocess.DEVNULL, cwd=command.SOURCE)
+
+    def test_real_programs_find_their_library(self):
+        done = self.run_module("clocks", "--scenario", "6host_star", "--pipelines", "oracle",
+                               "--program", "mine=examples/cristian.json", "--seeds", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "(?m)^mine ")
+
+    def test_nodes_are_started_as_the_interpreter(self):
+        done = self.run_module("validate-model", "--scenario", "6node_relay", "--repeats", "1",
+                               "--pipelines", "yoon2021_neither")
+        self.assertRegex(done.stdout, r"(?m)^yoon2021_neither +amd_ms +1/", done.stderr)
+
+    def test_a_closed_pipe_ends_it(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run([sys.executable, "-m", "simbench", "list"], stdout=writer,
+                              stderr=subprocess.PIPE, text=True)
+        os.close(writer)
+        self.assertEqual((done.returncode, done.stderr), (-signal.SIGPIPE, ""))
+
+
 class MissingPackagesTest(unittest.TestCase):
     def run_without(self, packages, code):
         block = f"import sys\nfor name in {packages!r}: sys.modules[name] = None\n"
