@@ -31,6 +31,12 @@ std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
+// Those of the last use_programs().
+ProgramFolders& folders_in_use() {
+  static ProgramFolders folders;
+  return folders;
+}
+
 // The library lies where it was built, was installed, or where the caller says.
 std::string find_shim(const std::string& folder) {
   if (!folder.empty()) return folder + "/libsimbench_shim.so";
@@ -135,9 +141,9 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
   }
 }
 
-std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
-                                         const ProgramFolders& options) {
+std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline) {
   if (!pipeline.programs) return {};
+  const ProgramFolders& options = folders_in_use();
   HostPrograms programs = *pipeline.programs;
   std::map<std::string, std::string> paths;
   std::set<std::string> remarks;
@@ -165,10 +171,15 @@ std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
 }
 
 void use_programs(const ProgramFolders& options) {
+  folders_in_use() = options;
   evaluation::set_program_maker(
       [options](const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
         return entry_of(scenario, pipeline, options);
       });
+}
+
+void keep_program_files(const std::string& log_folder) {
+  use_programs({.log_folder = log_folder, .library_folder = folders_in_use().library_folder});
 }
 
 }  // namespace simbench::app

@@ -4,7 +4,8 @@
 // and so is the preloaded library that is installed beside this program. What is missing is one
 // line, with what would help; the pipelines of algorithms go on.
 //
-//   use_programs({.log_folder = "logs"});  // once, before running anything
+//   use_programs();  // once, before running anything
+//   keep_program_files("logs");
 //   evaluation::evaluate(scenario, make_source, options, progress);
 #pragma once
 
@@ -39,10 +40,12 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
 
 // What is to be known of how this machine runs a pipeline's programs, each one line: that root's
 // are not nobody's (processes/lesser_user.h). Nothing of programs that cannot run.
-std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
-                                         const ProgramFolders& options = {});
+std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline);
 
-// Says how pipelines with programs run (evaluation/run/pipeline_choice.h).
+// Says how pipelines with programs run from here on (evaluation/run/pipeline_choice.h).
 void use_programs(const ProgramFolders& options = {});
+
+// The same with another log folder; the library stays where it is.
+void keep_program_files(const std::string& log_folder);
 
 }  // namespace simbench::app

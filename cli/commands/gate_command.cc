@@ -70,7 +70,8 @@ int gate(const GateOptions& options) {
   if (!options.junit.empty()) {
     reports::write_file(options.junit, reports::gate_junit(report));
   }
-  print_result(report_text(report, options.format));
+  print_result_in(options.format,
+                  [&report](const std::string& format) { return report_text(report, format); });
   return report.passed() ? kOk : kGateFailed;
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/program_pipelines.h"
 #include "python/src/bindings.h"
+#include "python/src/command.h"
 #include "recording/version.h"
 
 PYBIND11_MODULE(_simbench, module) {
@@ -21,4 +22,5 @@ PYBIND11_MODULE(_simbench, module) {
   bind_recordings(module);
   bind_clocks(module);
   bind_algorithms(module);
+  bind_command(module);
 }

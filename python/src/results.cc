@@ -61,6 +61,8 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_pr
         progress);
   });
   run->provenance->finished = std::chrono::system_clock::now();
+  app::rank_by(request.rank_by, run->archive.results);
+  run->no_levers = request.no_levers;
   run->archive.path = scenario.name;
   run->archive.scenario_json = scenario.resolved_json();
   run->notes = scenarios::warnings(scenario);
@@ -81,18 +83,27 @@ std::shared_ptr<Run> load_archive(const std::string& path) {
   return run;
 }
 
-std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
-                                     const std::vector<std::string>& pipelines,
+std::shared_ptr<Run> score_recording(const RecordingToScore& wanted,
                                      const py::object& on_progress) {
   auto run = std::make_shared<Run>();
-  run->recorded = std::make_shared<app::RecordedRun>(app::recorded_run(inputs, {}, pipelines));
+  run->provenance.emplace();
+  run->provenance->command = wanted.command;
+  run->provenance->started = std::chrono::system_clock::now();
+  const bags::FileOptions options = cli::file_options(wanted.reading);
+  run->recorded =
+      watched<std::shared_ptr<app::RecordedRun>>(on_progress, [&](const Progress& progress) {
+        return std::make_shared<app::RecordedRun>(app::recorded_run(
+            wanted.inputs, options, wanted.scoring, cli::read_progress(progress)));
+      });
   const app::RecordedRun& recorded = *run->recorded;
   run->scenario = recorded.scenario();
   run->notes = recorded.missing();
-  const std::vector<std::string> chosen = recorded.chosen(pipelines);
+  const std::vector<std::string> chosen = recorded.chosen(wanted.scoring.pipelines);
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
-    return recorded.evaluate(chosen, false, progress);
+    return recorded.evaluate(chosen, true, progress);
   });
+  app::rank_by(wanted.rank_by, run->archive.results);
+  run->provenance->finished = std::chrono::system_clock::now();
   run->archive.path = recorded.path();
   run->archive.scenario_json = recorded.scenario().resolved_json();
   for (const auto& more : {run->results().warnings, app::capture_notes(run->results())}) {
@@ -108,7 +119,7 @@ const reports::ResultsAnswer& known_answer(Run& run, const py::object& on_progre
   }
   if (!run.answer) {
     run.answer = watched<reports::ResultsAnswer>(on_progress, [&](const Progress& progress) {
-      return app::run_answer(run.results(), *run.scenario, {}, progress);
+      return app::run_answer(run.results(), *run.scenario, {.levers = !run.no_levers}, progress);
     });
   }
   return *run.answer;
@@ -318,7 +329,19 @@ void bind_run(py::module_& module) {
       .def_readwrite("first_seed", &RunRequest::first_seed)
       .def_readwrite("jobs", &RunRequest::jobs)
       .def_readwrite("keep_pulses", &RunRequest::keep_pulses)
+      .def_readwrite("rank_by", &RunRequest::rank_by)
+      .def_readwrite("no_levers", &RunRequest::no_levers)
       .def_readwrite("command", &RunRequest::command);
+  py::class_<RecordingToScore>(module, "RecordingToScore")
+      .def(py::init([](std::vector<std::string> inputs, std::vector<std::string> topics,
+                       std::string columns, std::vector<std::string> pipelines, std::string stream,
+                       bool genlock, std::string rank_by, std::vector<std::string> command) {
+        return RecordingToScore{std::move(inputs),
+                                {std::move(topics), std::move(columns)},
+                                {std::move(pipelines), std::move(stream), genlock},
+                                std::move(rank_by),
+                                std::move(command)};
+      }));
   py::class_<Run, std::shared_ptr<Run>>(module, "Run")
       .def_property_readonly("scenario", [](const Run& run) { return run.results().scenario; })
       .def_property_readonly("path", [](const Run& run) { return run.archive.path; })

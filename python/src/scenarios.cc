@@ -22,10 +22,19 @@ py::list list_scenarios() {
   return all;
 }
 
-py::list describe(const std::string& scenario) {
+using Sets = std::vector<std::pair<std::string, std::string>>;
+
+std::vector<simbench::scenarios::Override> overrides_of(const Sets& sets) {
+  std::vector<simbench::scenarios::Override> overrides;
+  overrides.reserve(sets.size());
+  for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
+  return overrides;
+}
+
+py::list describe(const std::string& scenario, const Sets& sets) {
   py::list lines;
-  for (const auto& line :
-       simbench::scenarios::describe(simbench::scenarios::load_scenario(scenario))) {
+  for (const auto& line : simbench::scenarios::describe(
+           simbench::scenarios::load_scenario(scenario, overrides_of(sets)))) {
     lines.append(py::dict(py::arg("pointer") = line.pointer, py::arg("value") = line.value,
                           py::arg("unit") = line.unit, py::arg("meaning") = line.meaning,
                           py::arg("source") = line.source));
@@ -43,13 +52,10 @@ py::dict stages() {
 
 // The pipelines of a scenario with these changes: name, and the algorithm of each stage that it
 // has.
-py::list pipelines_of(const std::string& scenario,
-                      const std::vector<std::pair<std::string, std::string>>& sets) {
-  std::vector<simbench::scenarios::Override> overrides;
-  overrides.reserve(sets.size());
-  for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
+py::list pipelines_of(const std::string& scenario, const Sets& sets) {
   py::list all;
-  for (const auto& pipeline : simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
+  for (const auto& pipeline :
+       simbench::scenarios::load_scenario(scenario, overrides_of(sets)).pipelines) {
     py::dict each;
     each["name"] = pipeline.name;
     for (const simbench::StageInfo& stage : simbench::kPipelineStages) {
