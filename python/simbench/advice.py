@@ -70,6 +70,7 @@ def advise(
         a set in ms that counts as wrong; pipeline: another than the recommended one.
     set: changes of every rig's scenario.
     seeds: simulated rigs behind an answer; first_seed; jobs: threads, 0: one for every core.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     requirements: List[str] = repeated("require", require)
     if not requirements:

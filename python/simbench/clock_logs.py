@@ -57,7 +57,7 @@ class Stability(Output):
                       for file in self._files for step in file["steps"]])
 
     def curve(self, measure: str) -> Any:
-        """adev, mdev, hdev, tdev_ms or mtie_ms: a row a point."""
+        """The points of a curve, `measure`: adev, mdev, hdev, tdev_ms or mtie_ms. A row a point."""
         if measure not in _CURVES:
             raise InputError(f"measure: found {measure!r}, allowed: {', '.join(_CURVES)}")
         return table([{"file": file["file"], **point}

@@ -34,7 +34,7 @@ class Clocks:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench clocks --format json` prints it."""
-        return json.loads(self._run.json())
+        return dict(json.loads(self._run.json()))
 
     @property
     def table(self) -> Any:
@@ -57,7 +57,8 @@ class Clocks:
         return table(records(self._run.series_csv()))
 
     def curve(self, measure: str) -> Any:
-        """adev, mdev, hdev, tdev_ms or mtie_ms: pipeline, tau_s, value."""
+        """The points of a curve, `measure`: adev, mdev, hdev, tdev_ms or mtie_ms. A row a point:
+        pipeline, tau_s, value."""
         return table([{"pipeline": pipeline, "tau_s": tau, "value": value}
                       for pipeline, points in self._curves(measure).items()
                       for tau, value in points.items()])

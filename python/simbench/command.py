@@ -91,7 +91,7 @@ def words_of(**options: Any) -> List[str]:
 
 
 def _text(value: Any) -> str:
-    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+    return str(os.fspath(value)) if isinstance(value, os.PathLike) else str(value)
 
 
 def _in_python(text: str) -> str:
@@ -113,18 +113,18 @@ def run_command(
     line = ["simbench", command, *options, *(["--", *arguments] if arguments else [])]
     try:
         with Progress(progress, unit) as shown:
-            ended = _simbench.run_command(line, list(formats), page_columns(), shown.callback)
+            status, results, output, said = _simbench.run_command(
+                line, list(formats), page_columns(), shown.callback
+            )
     except InputError as error:
         raise InputError(_in_python(str(error))) from error.__cause__
-    said = ended["messages"]
-    status = ended["status"]
     if status == _INTERRUPTED:
         raise KeyboardInterrupt
     if status in _BAD_INPUT or status == _INTERNAL_ERROR:
         text = "\n".join(_in_python(text) for kind, text in said if kind == "error")
         raise InputError(text) if status in _BAD_INPUT else Error(text or f"{command} failed")
     _warn([text for kind, text in said if kind == "warning"], 2)
-    return Ended(status, ended["results"], ended["output"], [text for _, text in said])
+    return Ended(status, results, output, [text for _, text in said])
 
 
 @contextlib.contextmanager

@@ -76,6 +76,7 @@ def trace(
     from_ms, to_ms: only events that begin then, in ms of true time since the start of host
         synchronisation; max_events: how many at most.
     program, program_log, python: as for run().
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     use_python(python)
     names, changes = changes_of("trace", scenario, [pipeline] if pipeline else None, set)
@@ -104,14 +105,15 @@ def record(
     collect: Optional[str] = None,
     progress: Optional[bool] = None,
 ) -> str:
-    """Records captures of a scenario into a new folder, for replay(), inspect() and fit(), and
-    returns its path.
+    """Records captures of a scenario into a new folder, `output`, for replay(), inspect() and fit(),
+    and returns its path.
 
     scenario: a name or the path of a JSON file; set: changes of it. pipelines: as for run(); None:
         all. seed: the first; repeats: captures of each pipeline.
     program, program_log, python: as for run().
     backend, rig, key_file: "hardware" captures on the rig of this rig file, whose hosts run
         `simbench node`; collect: in place of a capture, fetch what its nodes have of this session.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     use_python(python)
     names, changes = changes_of("record", scenario, pipelines, set)
@@ -146,6 +148,7 @@ def figure(
     archive: a Result, the folder of an archive, or a recording (a folder, or files; topics and
         columns as for inspect()). In its place scenario, with changes by set.
     pipelines: only these. seed: of a figure of one seed; seeds: of one over a scenario's seeds.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     options = words_of(
         scenario=scenario, set=sets_of(set), pipelines=joined("pipelines", pipelines), seed=seed,
@@ -172,6 +175,7 @@ def report(
     seeds_in_detail: how many seeds are shown with stamps, clocks and single pulses.
     budget_seeds: of the error budgets (136 runs for each seed and pipeline); 0: none.
     pipelines: only these in detail; the tables have all.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     if output is None and any(isinstance(each, Result) for each in
                               (archives if isinstance(archives, Sequence) else [archives])):
@@ -202,13 +206,14 @@ def export(
     progress: Optional[bool] = None,
 ) -> Any:
     """Says which frames belong together: a row a frame, with set, camera, stream, file, topic, number
-    of the message in its topic, counter, and sensor_ns, arrival_ns and global_ns in ns. Returns a
-    table; with `output` it writes the CSV to this file, too.
+    of the message in its topic, counter, and sensor_ns, arrival_ns and stamp_ns in ns, exactly.
+    Returns a table; with `output` it writes the CSV to this file, too.
 
     inputs: files of real cameras or a recording folder; topics and columns as for inspect().
     device_time: stamps the frames; gathering: finds the sets; stream: of this kind of stream.
     complete: only sets in which no camera is missing.
     stamps: in place of sets every frame, with its global stamps by these device_times.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     options = words_of(
         device_time=device_time, gathering=gathering, stream=stream, complete=bool(complete),

@@ -109,6 +109,7 @@ def fit(
     rank: then simulate the model under every pipeline of the leaderboard that it can run, over
         `seeds` seeds and by `jobs` threads (0: one for every core); verbose: text() has all rows
         and metrics.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     chosen = words_of(
         base=base, pipeline=pipeline, seed=seed, topics=joined("topics", topics), columns=columns,

@@ -47,7 +47,8 @@ def request_of(
         raise InputError(f"pipelines: found the text {pipelines!r}, allowed: a list of names")
     request = _simbench.RunRequest()
     request.scenario = os.fspath(scenario)
-    request.pipelines = [getattr(pipeline, "name", pipeline) for pipeline in pipelines or []]
+    request.pipelines = [pipeline.name if isinstance(pipeline, Pipeline) else pipeline
+                         for pipeline in pipelines or []]
     request.sets = [(pointer, json.dumps(value)) for pointer, value in (sets or {}).items()]
     request.sets += [
         ("/pipelines/-", json.dumps(_stages(pipeline, request)))
@@ -159,7 +160,7 @@ class Result:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as results.json has it."""
-        return json.loads(self._run.json())
+        return dict(json.loads(self._run.json()))
 
     @property
     def answer(self) -> str:
@@ -179,8 +180,8 @@ class Result:
             return self._run.text(format, detail, shown.callback)
 
     def frames(self, pipeline: str, seed: Optional[int] = None) -> Any:
-        """Every frame of one run: a structured NumPy array, read-only, in the memory of the
-        libraries.
+        """Every frame of one run, of this pipeline and seed (None: the first): a structured NumPy
+        array of the shape (frames,), read-only, in the memory of the libraries.
 
         Fields: camera, host, counter, pulse (-1: none or unknown), evaluated, in_warm_up; sensor_ms
         and frame_ms on the device's clock; backend_ms and arrival_ms on the host's; global_ms, the
@@ -261,7 +262,7 @@ class Comparison:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench compare --format json` prints it."""
-        return json.loads(self._comparison.json())
+        return dict(json.loads(self._comparison.json()))
 
     def __repr__(self) -> str:
         return page_text(self._comparison.text)
@@ -273,7 +274,7 @@ class Comparison:
 def run(
     scenario: Path,
     pipelines: Optional[Sequence[Union[str, Pipeline]]] = None,
-    seeds: int = 32,
+    seeds: Optional[int] = None,
     *,
     set: Optional[Mapping[str, Any]] = None,
     first_seed: int = 1,
@@ -294,7 +295,7 @@ def run(
     scenario: a name (list_scenarios()) or the path of a JSON file.
     pipelines: names of the scenario's, "host_sync[+capture_alignment]+device_time+gathering", or
         simbench.pipeline(); None: all.
-    seeds: how many; first_seed: the first.
+    seeds: how many; None: 32, on a real rig 1. first_seed: the first.
     set: changes of the scenario, {"/trigger/rate_hz": 30}.
     jobs: threads; 0: one for every core.
     rank_by: rank the pipelines by this metric.
@@ -310,6 +311,8 @@ def run(
     Raises InputError, KeyboardInterrupt at Ctrl-C. Doubts about the scenario become warnings.
     """
     use_python(python)
+    if seeds is None:
+        seeds = 1 if backend == "hardware" else 32
     request = request_of("run", scenario, pipelines, seeds, first_seed, set, jobs)
     if backend != "sim" or rig is not None or key_file is not None:
         return _run_on_rig(request, backend, rig, key_file, progress)
@@ -348,7 +351,8 @@ def _run_on_rig(
 
 
 def load(folder: Path, *, progress: Optional[bool] = None) -> Result:
-    """Reads the archive of a run: a folder of `simbench run --output`, or a results.json."""
+    """Reads the archive of a run, `folder`: one of `simbench run --output`, or a results.json.
+    progress: show that of the Result's work; None: where tqdm is installed and somebody looks."""
     path = os.fspath(folder)
     result = Result(_simbench.load_archive(path), progress)
     if result._run.is_clock_run:

@@ -32,7 +32,7 @@ class Inspection:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench inspect --format json` prints it."""
-        return json.loads(self._inspection.json())
+        return dict(json.loads(self._inspection.json()))
 
     @property
     def table(self) -> Any:

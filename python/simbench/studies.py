@@ -54,6 +54,7 @@ def paper(
     seeds: of each rate; first_seed: the first. jobs: threads; 0: one for every core.
     no_table_4: leave out the reconstruction, which this module has not and says so.
     output: a folder for paper.html with the figures and the archives.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     options = words_of(
         seeds=_whole("seeds", seeds, 1, 1_000_000), first_seed=first_seed,
@@ -74,6 +75,7 @@ def reality(
 
     names: of the recordings; none: all. seeds: None: as each recording says. jobs: threads; 0: one
     for every core. unknown: also run with the other values of what the publications do not give.
+    progress: show it; None: where tqdm is installed and somebody looks.
     """
     options = words_of(seeds=seeds, jobs=_whole("jobs", jobs, 0, 4096) or None,
                        unknown=bool(unknown))

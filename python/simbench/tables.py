@@ -66,7 +66,8 @@ def array(rows: _simbench.Rows) -> Any:
     dtype = numpy.dtype(
         {"names": names, "formats": formats, "offsets": offsets, "itemsize": rows.row_bytes}
     )
-    return numpy.frombuffer(rows, dtype=dtype)
+    buffer: Any = rows
+    return numpy.frombuffer(buffer, dtype=dtype)
 
 
 _STYLE = (

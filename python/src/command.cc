@@ -51,8 +51,8 @@ py::str text_of(const std::string& text) {
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
 }
 
-// {"status", "results": {format: text}, "output", "messages": [(kind, text)]}
-py::dict run_command(const std::vector<std::string>& arguments,
+// (status, {format: text}, output, [(kind, text)])
+py::tuple run_command(const std::vector<std::string>& arguments,
                      const std::vector<std::string>& formats, std::optional<std::size_t> columns,
                      const py::object& on_progress) {
   const Ended ended = watched<Ended>(on_progress, [&](const evaluation::Progress& progress) {
@@ -64,8 +64,7 @@ py::dict run_command(const std::vector<std::string>& arguments,
   for (const cli::EmbeddedMessage& message : ended.messages) {
     messages.append(py::make_tuple(message.kind, text_of(message.text)));
   }
-  return py::dict(py::arg("status") = ended.status, py::arg("results") = results,
-                  py::arg("output") = text_of(ended.output), py::arg("messages") = messages);
+  return py::make_tuple(ended.status, results, text_of(ended.output), messages);
 }
 
 // The changes that add these programs to a scenario with `sets`, the pipelines to choose, and what
