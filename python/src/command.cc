@@ -53,8 +53,8 @@ py::str text_of(const std::string& text) {
 
 // (status, {format: text}, output, [(kind, text)])
 py::tuple run_command(const std::vector<std::string>& arguments,
-                     const std::vector<std::string>& formats, std::optional<std::size_t> columns,
-                     const py::object& on_progress) {
+                      const std::vector<std::string>& formats, std::optional<std::size_t> columns,
+                      const py::object& on_progress) {
   const Ended ended = watched<Ended>(on_progress, [&](const evaluation::Progress& progress) {
     return run_within(arguments, formats, columns, progress);
   });

@@ -396,6 +396,15 @@ class RunsTest(CommandsTest):
         with self.assertRaisesRegex(simbench.InputError, "rig"):
             simbench.run(SCENARIO, backend="hardware")
 
+    def test_compare_has_the_commands_name_of_a_baseline(self):
+        result = simbench.load(self.now)
+        found = simbench.compare(result, with_baseline="oracle")
+        expected = command.simbench("compare", self.now, "--with-baseline", "oracle", "--json")
+        self.assertEqual(found.data, json.loads(expected))
+        self.assertEqual(simbench.compare(result, baseline="oracle").data, found.data)
+        with self.assertRaisesRegex(simbench.InputError, "with_baseline: found two results"):
+            simbench.compare(result, result, with_baseline="oracle")
+
     def test_programs_are_rows(self):
         with tempfile.TemporaryDirectory() as folder:
             rig = os.path.join(folder, "mine.json")
