@@ -141,7 +141,9 @@ def archives_of(
     with tempfile.TemporaryDirectory(prefix="simbench_") as folder:
         paths = []
         for number, each in enumerate(each_of, 1):
-            if isinstance(each, Result):
+            if isinstance(each, Result) and each._archive is not None:
+                paths.append(each._archive)
+            elif isinstance(each, Result):
                 path = os.path.join(folder, str(number), each.scenario)
                 os.makedirs(os.path.dirname(path))
                 each.save(path)

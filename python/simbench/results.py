@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+import tempfile
 import warnings
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _simbench
 from .algorithms import Pipeline
-from .errors import InputError, MissingPackage
+from .errors import InputError, MissingPackage, OutputError
 from .progress import Progress
 from .tables import array, notebook_html, page_text, records, table
 
@@ -128,9 +130,18 @@ def _stages(pipeline: Pipeline, request: _simbench.RunRequest) -> Dict[str, Any]
 class Result:
     """The results of all pipelines over all seeds: what `simbench run` prints and writes."""
 
-    def __init__(self, run: _simbench.Run, progress: Optional[bool] = None) -> None:
+    def __init__(
+        self,
+        run: _simbench.Run,
+        progress: Optional[bool] = None,
+        archive: Optional[str] = None,
+        kept: Any = None,
+    ) -> None:
+        """archive: where it was read. kept: what owns that folder, if it is the Result's own."""
         self._run = run
         self._progress = progress
+        self._archive = archive
+        self._kept = kept
         self._html: Optional[str] = None
 
     @property
@@ -236,7 +247,13 @@ class Result:
 
     def save(self, folder: Path) -> None:
         """Writes the archive that `simbench run --output` writes."""
-        self._run.save(os.fspath(folder))
+        if self._kept is None or self._archive is None:
+            self._run.save(os.fspath(folder))
+            return
+        try:
+            shutil.copytree(self._archive, folder)
+        except OSError as error:
+            raise OutputError(f"{os.fspath(folder)}: {error.strerror or error}") from error
 
     def __repr__(self) -> str:
         return page_text(self.text)
@@ -334,27 +351,24 @@ def _run_on_rig(
     progress: Optional[bool],
 ) -> Result:
     """Captures on a real rig, by the command, whose archive is read."""
-    import tempfile
-
     from .command import run_command, words_of
 
-    with tempfile.TemporaryDirectory(prefix="simbench_") as folder:
-        archive = os.path.join(folder, "rig")
-        options = words_of(
-            scenario=request.scenario, pipelines=",".join(request.pipelines) or None,
-            set=[f"{pointer}={value}" for pointer, value in request.sets], seeds=request.seeds,
-            first_seed=request.first_seed, backend=backend, rig=rig, key_file=key_file,
-            output=archive,
-        )  # fmt: skip
-        run_command("run", options, progress=progress)
-        return load(archive, progress=progress)
+    folder = tempfile.TemporaryDirectory(prefix="simbench_")
+    archive = os.path.join(folder.name, "rig")
+    options = words_of(
+        scenario=request.scenario, pipelines=",".join(request.pipelines) or None,
+        set=[f"{pointer}={value}" for pointer, value in request.sets], seeds=request.seeds,
+        first_seed=request.first_seed, backend=backend, rig=rig, key_file=key_file, output=archive,
+    )  # fmt: skip
+    run_command("run", options, progress=progress)
+    return Result(_simbench.load_archive(archive), progress, archive, folder)
 
 
 def load(folder: Path, *, progress: Optional[bool] = None) -> Result:
     """Reads the archive of a run, `folder`: one of `simbench run --output`, or a results.json.
     progress: show that of the Result's work; None: where tqdm is installed and somebody looks."""
     path = os.fspath(folder)
-    result = Result(_simbench.load_archive(path), progress)
+    result = Result(_simbench.load_archive(path), progress, path)
     if result._run.is_clock_run:
         raise InputError(
             f"{path}: found an archive of `simbench clocks`, allowed: one of `simbench run`"

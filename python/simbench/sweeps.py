@@ -8,17 +8,17 @@ import os
 import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from . import _simbench
 from .algorithms import Pipeline
 from .command import Ended, answer_text, repeated, run_command, words_of
 from .errors import InputError, MissingPackage, OutputError
-from .results import Path, _whole, changes_of, request_of, use_python
-from .tables import notebook_html, paragraphs, records, table
+from .results import Path, _whole, changes_of, use_python
+from .tables import notebook_html, records, table
 
 #: Values of a swept parameter: "0:1:0.1", or a sequence of numbers or words.
 Values = Union[str, Sequence[Any]]
 
 _UNITS = ("ms", "s", "us", "ns", "hz", "ppm", "ppb")
+_FORMATS = ("table", "markdown", "html")
 _LOCK = "lock"
 _MOST_CURVES = 24
 
@@ -27,7 +27,7 @@ class Sweep:
     """What `simbench sweep` finds: every metric at each point, for each pipeline and seed."""
 
     def __init__(self, ended: Ended, files: Mapping[str, bytes]) -> None:
-        self._text = ended.output
+        self._results = ended.results
         self._notes = ended.notes
         self._files = dict(files)
         self._data: Dict[str, Any] = json.loads(files["answer.json"])
@@ -59,9 +59,11 @@ class Sweep:
         """The answer in one paragraph."""
         return answer_text(self._data.get("answer"))
 
-    def text(self) -> str:
-        """What `simbench sweep` prints: the answer and the tables."""
-        return self._text
+    def text(self, format: str = "table") -> str:
+        """What `simbench sweep` prints: the answer and the tables. `format`: table, markdown, html."""
+        if format not in _FORMATS:
+            raise InputError(f"format: found {format!r}, allowed: {', '.join(_FORMATS)}")
+        return self._results[format]
 
     @property
     def table(self) -> Any:
@@ -194,13 +196,10 @@ class Sweep:
         return curves
 
     def __repr__(self) -> str:
-        return self._text.rstrip("\n")
+        return self.text().rstrip("\n")
 
     def _repr_html_(self) -> str:
-        lines, _, tables = self._text.partition("\n\n")
-        import html
-
-        return notebook_html(paragraphs(lines.split("\n")) + f"<pre>{html.escape(tables)}</pre>")
+        return notebook_html(self.text("html"))
 
 
 def _is_number(value: Any) -> bool:
@@ -301,7 +300,8 @@ def sweep(
         raise InputError("study: found 'list', allowed: a name of listing('studies')")
     with tempfile.TemporaryDirectory(prefix="simbench_") as temporary:
         folder = os.path.join(temporary, "sweep") if output is None else os.fspath(output)
-        ended = run_command("sweep", [*options, f"--output={folder}"], progress=progress)
+        ended = run_command("sweep", [*options, f"--output={folder}"], formats=_FORMATS,
+                            progress=progress)
         files = {}
         for name in sorted(os.listdir(folder)):
             if name != _LOCK:

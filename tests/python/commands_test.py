@@ -6,6 +6,8 @@ import json
 import math
 import os
 import random
+import subprocess
+import sys
 import tempfile
 import unittest
 import unittest.mock
@@ -82,6 +84,8 @@ class SweepTest(CommandsTest):
         for row, line in zip(table.to_dict("records"), lines):
             self.assertEqual(row["amd_ms"], float(line["amd_ms"]))
         self.assertEqual(self.sweep.text(), self.text)
+        self.assertIn("<table>", self.sweep._repr_html_())
+        self.check_refused(lambda: self.sweep.text("x"), "format: found 'x', allowed: table, ")
         self.assertTrue(" ".join(self.text.split()).startswith(" ".join(self.sweep.answer.split())))
         self.assertEqual(len(self.sweep.hosts), len(table))  # one host
 
@@ -359,6 +363,9 @@ class FilesTest(CommandsTest):
         self.assertIn(b"<!doctype html>", self.content(written))
         result = simbench.load(self.now)
         self.check_refused(lambda: simbench.report(result), "output: found none for a Result")
+        both = simbench.report([result, simbench.run(SCENARIO, ["oracle"], seeds=1)],
+                               self.path("both.html"), budget_seeds=0, seeds_in_detail=1)
+        self.assertEqual(both, self.path("both.html"))
         self.check_refused(lambda: simbench.report([]), "archives: found an empty list")
 
     def test_matched_frames_have_every_nanosecond(self):
@@ -424,6 +431,19 @@ class RunsTest(CommandsTest):
             self.assertEqual(list(clocks.table["standing"]), ["failed"])
         self.check_refused(lambda: simbench.run(SCENARIO, seeds=1, program="none"),
                            "program none: found no file")
+
+    def test_programs_run_beside_algorithms_in_python(self):
+        rig = self.path("rig.json")
+        ended = ["python3", "-c", "raise SystemExit(3)"]
+        with open(rig, "w", encoding="utf-8") as out:
+            json.dump({"host_sync": {"program": {"master": [ended], "slave": [ended]}}}, out)
+        done = subprocess.run(
+            [sys.executable, "-m", "simbench", "run", "--scenario", "9cam_3host_30fps_azure_kinect",
+             "--seeds", "1", "--pipelines", "oracle", "--program", f"mine={rig}", "--format",
+             "json"],
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        self.assertIn("exited with status 3", done.stdout, done.stderr)
 
     def test_algorithms_of_a_file(self):
         file = os.path.join(command.SOURCE, "examples", "my_algorithm.py")
