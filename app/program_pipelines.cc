@@ -32,6 +32,12 @@ std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
+// Where the last use_programs() keeps the hosts' folders.
+std::string& log_folder_in_use() {
+  static std::string folder;
+  return folder;
+}
+
 // The library lies where it was built, was installed, or where the program says.
 std::string find_shim() {
   const std::string& folder = own_program().library_folder;
@@ -137,8 +143,7 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
   }
 }
 
-std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
-                                         const ProgramFolders& options) {
+std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline) {
   if (!pipeline.programs) return {};
   HostPrograms programs = *pipeline.programs;
   std::map<std::string, std::string> paths;
@@ -153,7 +158,7 @@ std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
             .command = command,
             .program = path == paths.end() ? "" : path->second,
             .environment = programs.environment,
-            .folder = options.log_folder,
+            .folder = log_folder_in_use(),
             .shim = shim,
             .readable = programs.readable};
         remarks.insert(processes::why_root(settings));
@@ -167,6 +172,7 @@ std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
 }
 
 void use_programs(const ProgramFolders& options) {
+  log_folder_in_use() = options.log_folder;
   evaluation::set_program_maker(
       [options](const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
         return entry_of(scenario, pipeline, options);

@@ -1,10 +1,10 @@
 // Pipelines whose host synchronisation is real programs: what they need of this machine.
 //
 // Programs are found before the run (bare names as the shell would, sim/programs/find_program.h),
-// and so is the preloaded library (own_program.h). What is missing is one
-// line, with what would help; the pipelines of algorithms go on.
+// and so is the preloaded library (own_program.h). What is missing is one line, with what would
+// help; the pipelines of algorithms go on.
 //
-//   use_programs({.log_folder = "logs"});  // once, before running anything
+//   use_programs({.log_folder = "logs"});  // before running anything
 //   evaluation::evaluate(scenario, make_source, options, progress);
 #pragma once
 
@@ -36,10 +36,9 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
 
 // What is to be known of how this machine runs a pipeline's programs, each one line: that root's
 // are not nobody's (processes/lesser_user.h). Nothing of programs that cannot run.
-std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline,
-                                         const ProgramFolders& options = {});
+std::vector<std::string> program_remarks(const scenarios::Pipeline& pipeline);
 
-// Says how pipelines with programs run (evaluation/run/pipeline_choice.h).
+// Says how pipelines with programs run from here on (evaluation/run/pipeline_choice.h).
 void use_programs(const ProgramFolders& options = {});
 
 }  // namespace simbench::app

@@ -231,9 +231,16 @@ bool is_recording(const std::string& path) {
 }
 
 RecordedRun recorded_run(const std::vector<std::string>& inputs, const bags::FileOptions& options,
-                         const std::vector<std::string>& pipelines) {
-  if (const auto folder = recording_folder_of(inputs)) return RecordedRun(*folder);
-  return RecordedRun(inputs, recorded_streams(inputs, options), {.pipelines = pipelines});
+                         const StreamScoring& scoring, const ReadProgress& progress) {
+  if (const auto folder = recording_folder_of(inputs)) {
+    if (!scoring.stream.empty() || scoring.genlock) {
+      throw scenarios::InputError(
+          "--stream, --genlock: allowed with files; a recording folder has a scenario, which "
+          "states them");
+    }
+    return RecordedRun(*folder);
+  }
+  return RecordedRun(inputs, recorded_streams(inputs, options, progress), scoring);
 }
 
 std::vector<std::string> capture_notes(const evaluation::Results& results) {

@@ -96,10 +96,11 @@ bool is_recording_folder(const std::string& path);
 // Whether it is that, or a file of other people: anything but a folder and a .json file.
 bool is_recording(const std::string& path);
 
-// A recording folder, or files with their usual scoring. `pipelines`: of files, to be scored; of a
-// folder RecordedRun::chosen() takes them. Throws what RecordedRun and app::recorded_streams() do.
+// A recording folder, or files with this scoring, of which a folder has the pipelines alone:
+// RecordedRun::chosen() takes them. Throws what RecordedRun and app::recorded_streams() do, and
+// scenarios::InputError for a folder with another scoring.
 RecordedRun recorded_run(const std::vector<std::string>& inputs, const bags::FileOptions& options,
-                         const std::vector<std::string>& pipelines);
+                         const StreamScoring& scoring, const ReadProgress& progress = {});
 
 // What went wrong in captures that were scored all the same.
 std::vector<std::string> capture_notes(const evaluation::Results& results);

@@ -148,7 +148,7 @@ SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTabl
   folder.write("sweep.csv", reports::sweep_csv(plan, scores));
   folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
   const reports::AnswerText answer = reports::sweep_answer(plan, rows);
-  const reports::Document document = document_of(plan, rows, tables, answer);
+  reports::Document document = document_of(plan, rows, tables, answer);
   const std::vector<reports::Figure> figures = figures_of(plan, rows, tables);
   folder.write("sweep.txt", text_for_file(document));
   reports::Json for_programs = reports::new_document();
@@ -162,7 +162,7 @@ SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTabl
           {.plan = plan, .answer = answer, .figures = figures, .blocks = document.blocks}));
   std::string not_drawn = draw_figure(figures.front(), folder);
   folder.log().put_in_order();
-  return {.tables = plain(document),
+  return {.document = std::move(document),
           .not_drawn = std::move(not_drawn),
           .has_failed = failed_in_all_runs(plan, rows)};
 }

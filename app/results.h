@@ -15,6 +15,7 @@
 #include "evaluation/sweep/sweep_plan.h"
 #include "reports/archive/archive.h"
 #include "reports/sweep/sweep_folder.h"
+#include "reports/text/block.h"
 #include "scenarios/scenario.h"
 #include "scenarios/study.h"
 
@@ -43,9 +44,9 @@ class RunArchive {
 };
 
 struct SweepText {
-  std::string tables;       // for standard output
-  std::string not_drawn;    // why there is no plot; empty where there is one
-  bool has_failed = false;  // a pipeline whose real programs ended too early in every run
+  reports::Document document{};  // the answer and the tables, as the command prints them
+  std::string not_drawn;         // why there is no plot; empty where there is one
+  bool has_failed = false;       // a pipeline whose real programs ended too early in every run
 };
 
 // Writes sweep.csv, hosts.csv, sweep.txt, sweep.html, answer.json and, if gnuplot is installed,

@@ -14,6 +14,7 @@
 #include "cli/command.h"
 #include "cli/command_table.h"
 #include "cli/commands/commands.h"
+#include "cli/embedding.h"
 #include "cli/help.h"
 #include "cli/process.h"
 #include "recording/version.h"
@@ -62,6 +63,7 @@ int explain(CLI::App& app, const CLI::ParseError& error) {
                                                            : app.help());
     return ExitStatus::kOk;
   }
+  if (cli::embedding() != nullptr) throw scenarios::InputError(cli::usage_error(app, error));
   const auto used = app.get_subcommands();
   cli::print_error(
       cli::usage_error(app, error),
@@ -131,6 +133,19 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
 }
 
 }  // namespace
+
+namespace cli {
+
+int run_embedded(const std::vector<std::string>& arguments, Embedding& within,
+                 const CommandLineExtras& extras) {
+  const EmbeddingScope scope(within);
+  const reports::FilePage page;
+  reports::set_page_width(within.columns);
+  app::use_programs();
+  return parse_and_run(arguments, extras);
+}
+
+}  // namespace cli
 
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   const std::vector<std::string> arguments(argv, argv + argc);

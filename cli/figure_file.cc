@@ -1,6 +1,5 @@
 #include "cli/figure_file.h"
 
-#include "cli/messages.h"
 #include "scenarios/loader.h"
 
 namespace simbench::cli {
@@ -18,7 +17,6 @@ FigureFile::FigureFile(const std::string& path) : path_(path) {
 
 void FigureFile::draw(const reports::Figure& figure) const {
   reports::draw(figure, format_, path_);
-  print_note(path_ + " written");
 }
 
 }  // namespace simbench::cli

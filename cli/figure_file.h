@@ -19,8 +19,9 @@ class FigureFile {
   // .svg nor .pdf, reports::OutputError for a file that cannot be written.
   explicit FigureFile(const std::string& path);
   explicit operator bool() const { return file_.has_value(); }
-  // Needs a path. Throws reports::OutputError. Notes that the file is written.
+  // Needs a path. Throws reports::OutputError.
   void draw(const reports::Figure& figure) const;
+  const std::string& path() const { return path_; }
 
  private:
   std::string path_;

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdint>
+
+#include "app/interrupt.h"
 #include "app/recorded_streams.h"
 #include "cli/messages.h"
+#include "recording/recording.h"
 
 namespace simbench::cli {
 
@@ -30,6 +34,14 @@ std::vector<std::string> reading_words(const InputOptions& options) {
   }
   if (!options.columns.empty()) words.insert(words.end(), {"--columns", options.columns});
   return words;
+}
+
+ReadProgress read_progress(const evaluation::Progress& progress) {
+  constexpr std::uint64_t kFewBytes = 1'000'000;
+  return [&progress](std::uint64_t done, std::uint64_t total) {
+    if (total >= kFewBytes) progress(done, total);
+    if (app::InterruptHandler::raised()) throw RecordingCancelled();
+  };
 }
 
 std::optional<RecordedStreams> read_inputs(const std::vector<std::string>& inputs,

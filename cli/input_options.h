@@ -5,17 +5,14 @@
 //   const RecordedStreams rig = app::recorded_streams({"rig.bag"}, file_options(inputs));
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/interrupt.h"
 #include "bags/recorded_files.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "recording/recorded_streams.h"
-#include "recording/recording.h"
 
 namespace simbench::cli {
 
@@ -36,18 +33,15 @@ bags::FileOptions file_options(const InputOptions& options);
 // The options as words of a command line, which reads other inputs alike.
 std::vector<std::string> reading_words(const InputOptions& options);
 
-// Runs `work`, which reads inputs and takes a ReadProgress, with progress in bytes from a megabyte
-// on. Nothing after Ctrl-C.
+// Reports bytes from a megabyte on, and ends reading at an interruption. `progress` outlives it.
+ReadProgress read_progress(const evaluation::Progress& progress);
+
+// Runs `work`, which reads inputs and takes a ReadProgress, with that progress. Nothing after
+// Ctrl-C.
 template <class Result, class Work>
 std::optional<Result> watched_reading(const Work& work) {
-  constexpr std::uint64_t kFewBytes = 1'000'000;
   return watched<Result>(
-      [&](const evaluation::Progress& progress) {
-        return work([&](std::uint64_t done, std::uint64_t total) {
-          if (total >= kFewBytes) progress(done, total);
-          if (app::InterruptHandler::raised()) throw RecordingCancelled();
-        });
-      },
+      [&](const evaluation::Progress& progress) { return work(read_progress(progress)); },
       {.unit = "byte"});
 }
 

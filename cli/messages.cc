@@ -13,6 +13,7 @@
 #include <optional>
 #include <string_view>
 
+#include "cli/embedding.h"
 #include "recording/number_in.h"
 #include "recording/text_fields.h"
 #include "reports/text/output_file.h"
@@ -28,7 +29,9 @@ bool json_messages = false;
 
 void print_line(const char* kind, const std::string& words) {
   const std::string text = reports::in_this_program(words);
-  if (json_messages) {
+  if (Embedding* const within = embedding()) {
+    within->messages.push_back({kind, text});
+  } else if (json_messages) {
     std::cerr << event_line({{"event", kind}, {"text", text}}) << std::flush;
   } else {
     // It may name a file or a camera, whose name may hold anything.
@@ -56,11 +59,26 @@ std::string_view variable(const char* name) {
 
 void print_result(const std::string& text) {
   errno = 0;
-  std::cout << reports::printable_page(text) << std::flush;
-  if (!std::cout) {
+  std::ostream& out = result_stream();
+  out << reports::printable_page(text) << std::flush;
+  if (!out) {
     throw reports::OutputError(
         fmt::format("standard output: cannot be written: {}", reports::system_reason()));
   }
+}
+
+void print_result_in(const std::string& format,
+                     const std::function<std::string(const std::string& format)>& text_in) {
+  Embedding* const within = embedding();
+  if (within == nullptr) return print_result(text_in(format));
+  for (const std::string& wanted : within->formats) {
+    within->results[wanted] = reports::printable_page(text_in(wanted));
+  }
+}
+
+std::ostream& result_stream() {
+  if (Embedding* const within = embedding()) return within->output;
+  return std::cout;
 }
 
 void choose_message_format(const std::vector<std::string>& arguments) {
@@ -77,7 +95,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
 void print_note(const std::string& text) { print_line("note", text); }
 
 void print_error(const std::string& words, const std::string& next_command) {
-  if (next_command.empty()) return print_line("error", words);
+  if (next_command.empty() || embedding() != nullptr) return print_line("error", words);
   const std::string text = reports::in_this_program(words);
   const std::string next = reports::in_this_program(next_command);
   if (json_messages) {

@@ -14,8 +14,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,16 @@ enum ExitStatus : int {
 // Writes the result to standard output. Throws reports::OutputError if that fails (a full disk, a
 // closed descriptor).
 void print_result(const std::string& text);
+
+// Writes the result in this format, of which `text_in` makes the text. A program around the command
+// line (cli/embedding.h) gets it in all formats that it wants: those of --format, and "html", a
+// part of a page, where the result is a reports::Document.
+void print_result_in(const std::string& format,
+                     const std::function<std::string(const std::string& format)>& text_in);
+
+// The stream of print_result(), for results that are not to be in memory as a text: standard
+// output, or the kept output of an embedded command. Whoever writes to it checks it.
+std::ostream& result_stream();
 
 // Chooses JSON if the arguments have --json (before any "--"), so that also messages about the
 // arguments are JSON.

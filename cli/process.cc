@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <system_error>
 
+#include "cli/embedding.h"
 #include "scenarios/loader.h"
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -84,6 +85,7 @@ std::filesystem::path sibling_program(const std::string& name) {
 }
 
 int become_sibling(const std::string& name, std::vector<std::string> arguments) {
+  if (embedding() != nullptr) return ENOTSUP;
   const std::string program = sibling_program(name);
   ::execv(program.c_str(), argv_of(arguments).data());
   return errno;

@@ -29,7 +29,7 @@ void hold_standard_descriptors();
 std::filesystem::path sibling_program(const std::string& name);
 
 // Goes on as that program, with these arguments (argv, its own name included). Returns only if it
-// cannot be started: the error number.
+// cannot be started: the error number, ENOTSUP for an embedded command (cli/embedding.h).
 int become_sibling(const std::string& name, std::vector<std::string> arguments);
 
 // Goes on as `python3 -m simbench` with these arguments (argv). SIMBENCH_PYTHON names another

@@ -7,6 +7,7 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -71,21 +72,38 @@ NamedProgram read_program(const std::string& text, const std::string& label) {
   return from_file(text.substr(0, equals), text.substr(equals + 1), label);
 }
 
-// On the pipelines that are to run: all, or those named.
-void say_remarks(const scenarios::Scenario& scenario, const std::vector<std::string>& pipelines,
-                 const ProgramOptions& options) {
+}  // namespace
+
+std::vector<std::string> program_remarks(const scenarios::Scenario& scenario,
+                                         const std::vector<std::string>& pipelines) {
   std::set<std::string> remarks;
   for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
     if (!pipelines.empty() && std::ranges::find(pipelines, pipeline.name) == pipelines.end())
       continue;
-    for (std::string& remark : app::program_remarks(pipeline, {.log_folder = options.log_folder})) {
+    for (std::string& remark : app::program_remarks(pipeline)) {
       remarks.insert(std::move(remark));
     }
   }
-  for (const std::string& remark : remarks) print_note(remark);
+  return {remarks.begin(), remarks.end()};
 }
 
-}  // namespace
+std::vector<scenarios::Override> program_pipelines(const std::vector<std::string>& programs,
+                                                   const scenarios::Pipeline& first,
+                                                   std::vector<std::string>& pipelines) {
+  std::vector<scenarios::Override> overrides;
+  for (const std::string& text : programs) {
+    const std::string label = "--program " + scenarios::shown_text(text);
+    NamedProgram program = read_program(text, label);
+    program.pipeline["name"] = program.name;
+    program.pipeline.emplace("device_time", first.device_time);
+    program.pipeline.emplace("gathering", first.gathering);
+    overrides.push_back({"/pipelines/-", program.pipeline.dump(), label});
+    if (!pipelines.empty() && std::ranges::find(pipelines, program.name) == pipelines.end()) {
+      pipelines.push_back(program.name);
+    }
+  }
+  return overrides;
+}
 
 void add_program_options(Command& command, ProgramOptions& options) {
   command.texts("--program", "NAME=FILE.json", options.programs,
@@ -104,24 +122,12 @@ scenarios::Scenario load_with_programs(const std::string& scenario,
   std::vector<scenarios::Override> overrides =
       evaluation::with_ad_hoc_pipelines(scenario, overrides_of(sets), pipelines, ad_hoc);
   scenarios::Scenario loaded = scenarios::load_scenario(scenario, overrides);
-  if (options.programs.empty()) {
-    say_remarks(loaded, pipelines, options);
-    return loaded;
+  if (!options.programs.empty()) {
+    std::ranges::move(program_pipelines(options.programs, loaded.pipelines.front(), pipelines),
+                      std::back_inserter(overrides));
+    loaded = scenarios::load_scenario(scenario, overrides);
   }
-  const scenarios::Pipeline first = loaded.pipelines.front();
-  for (const std::string& text : options.programs) {
-    const std::string label = "--program " + scenarios::shown_text(text);
-    NamedProgram program = read_program(text, label);
-    program.pipeline["name"] = program.name;
-    program.pipeline.emplace("device_time", first.device_time);
-    program.pipeline.emplace("gathering", first.gathering);
-    overrides.push_back({"/pipelines/-", program.pipeline.dump(), label});
-    if (!pipelines.empty() && std::ranges::find(pipelines, program.name) == pipelines.end()) {
-      pipelines.push_back(program.name);
-    }
-  }
-  loaded = scenarios::load_scenario(scenario, overrides);
-  say_remarks(loaded, pipelines, options);
+  for (const std::string& remark : program_remarks(loaded, pipelines)) print_note(remark);
   return loaded;
 }
 

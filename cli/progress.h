@@ -39,6 +39,7 @@
 #include <string>
 
 #include "app/interrupt.h"
+#include "cli/embedding.h"
 #include "cli/interrupt_deadline.h"
 #include "evaluation/run/evaluate.h"
 
@@ -114,6 +115,20 @@ struct Watch {
 // Reports the first Ctrl-C.
 void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t total);
 
+// watched() of an embedded command (cli/embedding.h): its owner is told, and interrupts.
+template <class Result, class Work>
+std::optional<Result> watched_by(const Embedding& owner, const Work& work) {
+  try {
+    evaluation::Progress report = [&owner](std::uint64_t done, std::uint64_t total) {
+      if (owner.progress) owner.progress(done, total);
+    };
+    return work(report);
+  } catch (const std::exception&) {
+    if (!app::InterruptHandler::raised()) throw;
+  }
+  return std::nullopt;
+}
+
 // Runs the work of a long command, with progress, until its end or the first Ctrl-C.
 //
 // After Ctrl-C the work ends soon (cli/interrupt_deadline.h); a line reports how far it got, and
@@ -128,6 +143,7 @@ void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t to
 // interrupted.
 template <class Result, class Work>
 std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
+  if (const Embedding* const within = embedding()) return watched_by<Result>(*within, work);
   const app::InterruptHandler handler;
   Progress progress(std::cerr, progress_style(), watch.unit);
   std::mutex mutex;  // guards what follows, and `progress`

@@ -5,13 +5,14 @@
 #include <iostream>
 
 #include "app/interrupt.h"
+#include "cli/embedding.h"
 
 namespace simbench::cli {
 namespace {
 
-// Enter is yes; the end of input, or no terminal, is no.
+// Enter is yes; the end of input, or no terminal of its own, is no.
 bool ask_at_terminal(const std::string& text) {
-  if (isatty(STDIN_FILENO) == 0) return false;
+  if (isatty(STDIN_FILENO) == 0 || embedding() != nullptr) return false;
   std::cerr << text << ", then press Enter: " << std::flush;
   std::string line;
   return static_cast<bool>(std::getline(std::cin, line));

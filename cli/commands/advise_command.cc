@@ -178,6 +178,24 @@ void check_hosts_option(const AdviseOptions& options) {
                   scenarios::shown_text(options.hosts), options.request.rig.camera));
 }
 
+std::string advice_text(const evaluation::Advice& advice, const std::optional<RareWorld>& world,
+                        const std::optional<std::vector<reports::RareResult>>& rare,
+                        const std::string& format) {
+  if (format == "json") {
+    reports::Json root = reports::advice_json(advice);
+    if (rare) root["rare"] = reports::rare_json(*rare);
+    return reports::file_text(root);
+  }
+  reports::Document document = reports::advice_document(advice);
+  if (rare) {
+    document.blocks.insert(document.blocks.begin(),
+                           reports::rare_block(fmt::format("How often it goes wrong: {} with {}",
+                                                           world->rig, world->pipeline),
+                                               *rare));
+  }
+  return reports::drawn_as(format, document);
+}
+
 int advise(AdviseOptions options) {
   check_rare_options(options);
   options.request.requirements = evaluation::parse_requirements(options.require);
@@ -202,20 +220,9 @@ int advise(AdviseOptions options) {
     rare = rare_results(options, *world);
     if (!rare) return kInterrupted;
   }
-  if (options.format == "json") {
-    reports::Json root = reports::advice_json(*advice);
-    if (rare) root["rare"] = reports::rare_json(*rare);
-    print_result(reports::file_text(root));
-    return kOk;
-  }
-  reports::Document document = reports::advice_document(*advice);
-  if (rare) {
-    document.blocks.insert(document.blocks.begin(),
-                           reports::rare_block(fmt::format("How often it goes wrong: {} with {}",
-                                                           world->rig, world->pipeline),
-                                               *rare));
-  }
-  print_result(options.format == "markdown" ? markdown(document) : plain(document));
+  print_result_in(options.format, [&](const std::string& format) {
+    return advice_text(*advice, world, rare, format);
+  });
   return kOk;
 }
 

@@ -89,7 +89,10 @@ int clocks(ClocksOptions options) {
   if (!causes) return kInterrupted;
   print_result(app::clock_text(*results, scenario, options.format));
   // Last: without gnuplot the results are there all the same.
-  if (figure) figure.draw(reports::clock_figure(*results));
+  if (figure) {
+    figure.draw(reports::clock_figure(*results));
+    print_note(figure.path() + " written");
+  }
   return status_of(results->results);
 }
 

@@ -199,8 +199,8 @@ std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& comman
                     "`simbench run --output`, because {} needs other worlds",
                     command.inputs.front(), entry.id));
   }
-  const app::RecordedRun run =
-      app::recorded_run(command.inputs, file_options(command.reading), command.pipelines);
+  const app::RecordedRun run = app::recorded_run(command.inputs, file_options(command.reading),
+                                                 {.pipelines = command.pipelines});
   const app::FigureOptions options = options_of(command, entry, run.chosen({}));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
     return app::recording_figures(run, options, progress);

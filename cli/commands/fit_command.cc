@@ -151,12 +151,23 @@ std::optional<FitTask> task_of(const FitOptions& options) {
   return task_of_files(options);
 }
 
-// The model under every pipeline; nothing after Ctrl-C.
-std::optional<std::string> ranking_text(const scenarios::Scenario& model,
-                                        const FitOptions& options) {
-  const app::FittedRanking ranking = app::ranking_of(model);
+// The model under every pipeline.
+struct Ranked {
+  app::FittedRanking ranking{};
+  evaluation::Results results{};
+
+  std::string text(const std::string& format, bool verbose) const {
+    return app::results_text(results, ranking.scenario, format,
+                             verbose ? app::Detail::kAll : app::Detail::kScreen,
+                             reports::results_answer(results));
+  }
+};
+
+// Nothing after Ctrl-C.
+std::optional<Ranked> ranked(const scenarios::Scenario& model, const FitOptions& options) {
+  app::FittedRanking ranking = app::ranking_of(model);
   for (const std::string& text : ranking.left_out) print_note("not ranked: " + text);
-  const auto results = watched<evaluation::Results>(
+  auto results = watched<evaluation::Results>(
       [&](const evaluation::Progress& progress) {
         return evaluation::evaluate(
             ranking.scenario, [&] { return app::simulated_world(ranking.scenario); },
@@ -165,9 +176,18 @@ std::optional<std::string> ranking_text(const scenarios::Scenario& model,
       {.unit = "run"});
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
-  return app::results_text(*results, ranking.scenario, options.format,
-                           options.verbose ? app::Detail::kAll : app::Detail::kScreen,
-                           reports::results_answer(*results));
+  return Ranked{std::move(ranking), std::move(*results)};
+}
+
+// What is printed, in this format: the fit alone, or with the ranking; "json" has the ranking
+// alone, "fit_json" the fit, for a program that wants both.
+std::string fit_text(const reports::FitReport& report, const std::optional<Ranked>& ranking,
+                     const std::string& format, bool verbose) {
+  if (format == "fit_json" || (format == "json" && !ranking)) return reports::fit_json(report);
+  if (!ranking) return reports::fit_table(report);
+  if (format == "json" || format == "csv") return ranking->text(format, verbose);
+  return fmt::format("{}\nWhat every algorithm would give on this rig\n{}\n\n{}",
+                     reports::fit_table(report), kRankingLimits, ranking->text(format, verbose));
 }
 
 int run_fit(const FitOptions& options) {
@@ -192,16 +212,14 @@ int run_fit(const FitOptions& options) {
   output.write(report.study.model.text);
   output.publish();
   const scenarios::Scenario& model = report.study.model.scenario;
-  if (!options.rank) {
-    print_result(options.format == "json" ? reports::fit_json(report) : reports::fit_table(report));
-    return kOk;
+  std::optional<Ranked> ranking;
+  if (options.rank) {
+    ranking = ranked(model, options);
+    if (!ranking) return kInterrupted;
   }
-  const std::optional<std::string> ranking = ranking_text(model, options);
-  if (!ranking) return kInterrupted;
-  print_result(options.format == "json"
-                   ? *ranking
-                   : fmt::format("{}\nWhat every algorithm would give on this rig\n{}\n\n{}",
-                                 reports::fit_table(report), kRankingLimits, *ranking));
+  print_result_in(options.format, [&](const std::string& format) {
+    return fit_text(report, ranking, format, options.verbose);
+  });
   return kOk;
 }
 

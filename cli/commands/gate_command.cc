@@ -76,7 +76,8 @@ int gate(const GateOptions& options) {
   if (!options.markdown.empty()) {
     reports::write_file(options.markdown, reports::gate_markdown(report));
   }
-  print_result(report_text(report, options.format));
+  print_result_in(options.format,
+                  [&report](const std::string& format) { return report_text(report, format); });
   return report.passed() ? kOk : kGateFailed;
 }
 

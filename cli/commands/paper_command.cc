@@ -105,7 +105,8 @@ int run_paper(const PaperCommand& command) {
     if (!written) return kInterrupted;
     print_note(fmt::format("results written to {0}; the page is {0}/paper.html", command.output));
   }
-  print_result(paper_text(*results, command.format));
+  print_result_in(command.format,
+                  [&results](const std::string& format) { return paper_text(*results, format); });
   return kOk;
 }
 

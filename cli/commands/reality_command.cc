@@ -68,9 +68,10 @@ int reality(const RealityCommandOptions& options) {
     if (!rows) return kInterrupted;
     results.push_back({.recording = recording, .rows = std::move(*rows)});
   }
-  print_result(options.format == "json"
-                   ? reports::reality_json(results)
-                   : reports::drawn_as(options.format, reports::reality_document(results)));
+  print_result_in(options.format, [&results](const std::string& format) {
+    return format == "json" ? reports::reality_json(results)
+                            : reports::drawn_as(format, reports::reality_document(results));
+  });
   return kOk;
 }
 

@@ -54,14 +54,8 @@ struct ReplayOptions {
 // Nothing after Ctrl-C.
 std::optional<app::RecordedRun> recorded_run(const ReplayOptions& options) {
   std::optional<app::RecordedRun> run;
-  if (const auto folder = app::recording_folder_of(options.inputs)) {
-    if (!options.scoring.stream.empty() || options.scoring.genlock) {
-      throw scenarios::InputError(
-          "--stream, --genlock: allowed with files; a recording folder has a scenario, which "
-          "states "
-          "them");
-    }
-    run.emplace(*folder);
+  if (app::recording_folder_of(options.inputs)) {
+    run.emplace(app::recorded_run(options.inputs, {}, options.scoring));
   } else if (auto recorded = read_inputs(options.inputs, options.reading)) {
     run.emplace(options.inputs, std::move(*recorded), options.scoring);
   }

@@ -115,9 +115,10 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
   });
   if (!budgets) return kInterrupted;
   report.budgets = std::move(*budgets);
-  print_result(options.format == "json"
-                   ? reports::budget_json(report)
-                   : reports::drawn_as(options.format, reports::budget_document(report)));
+  print_result_in(options.format, [&report](const std::string& format) {
+    return format == "json" ? reports::budget_json(report)
+                            : reports::drawn_as(format, reports::budget_document(report));
+  });
   const bool has_failed = std::ranges::any_of(
       report.budgets, [](const auto& budget) { return !budget.stages.failed.empty(); });
   return has_failed ? kProgramFailed : kOk;

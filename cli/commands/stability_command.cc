@@ -88,9 +88,11 @@ int list_series(const StabilityOptions& options) {
   for (const std::string& file : options.files) {
     found.push_back({file, evaluation::clock_log_series(file, options.log)});
   }
-  print_result(options.format == "json" || options.format == "csv"
-                   ? reports::log_series_json(found)
-                   : reports::drawn_as(options.format, reports::log_series_document(found)));
+  print_result_in(options.format, [&found](const std::string& format) {
+    return format == "json" || format == "csv"
+               ? reports::log_series_json(found)
+               : reports::drawn_as(format, reports::log_series_document(found));
+  });
   return kOk;
 }
 
@@ -128,12 +130,16 @@ int run_stability(const StabilityOptions& options) {
   for (const reports::StabilityFinding& finding : found) {
     for (const std::string& note : finding.log.notes) print_note(note);
   }
-  print_result(options.format == "json" ? reports::stability_json(found)
-               : options.format == "csv"
-                   ? reports::stability_csv(found)
-                   : reports::drawn_as(options.format, reports::stability_document(found)));
+  print_result_in(options.format, [&found](const std::string& format) {
+    return format == "json"  ? reports::stability_json(found)
+           : format == "csv" ? reports::stability_csv(found)
+                             : reports::drawn_as(format, reports::stability_document(found));
+  });
   // Last: without gnuplot the results are there all the same.
-  if (figure) figure.draw(reports::stability_figure(found, masks));
+  if (figure) {
+    figure.draw(reports::stability_figure(found, masks));
+    print_note(figure.path() + " written");
+  }
   return std::ranges::all_of(found, keeps_limits) ? kOk : kGateFailed;
 }
 

@@ -195,7 +195,9 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
       study != nullptr ? study->tables : std::vector{scenarios::StudyTable::kResponse};
   const app::SweepText text = app::write_sweep_results(plan, tables, folder);
   if (!text.not_drawn.empty()) print_warnings({text.not_drawn});
-  print_result(text.tables);
+  print_result_in("table", [&text](const std::string& format) {
+    return reports::drawn_as(format, text.document);
+  });
   return text.has_failed ? kProgramFailed : kOk;
 }
 

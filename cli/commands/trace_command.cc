@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,7 +94,7 @@ class Output {
   }
 
   void write(const reports::Trace& trace, const std::string& format) {
-    std::ostream& out = file_ ? stream_ : std::cout;
+    std::ostream& out = file_ ? stream_ : result_stream();
     errno = 0;
     cli::write(trace, format, out);
     if (!out.flush()) fail();

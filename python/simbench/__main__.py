@@ -8,6 +8,7 @@ import os
 import signal
 import sys
 import traceback
+from typing import List, Optional
 
 from . import _simbench
 
@@ -21,7 +22,7 @@ def import_algorithms(file: str) -> None:
         sys.path.insert(0, folder)  # for the modules beside it
     module_name = os.path.splitext(name)[0]
     spec = importlib.util.spec_from_file_location(module_name, os.path.join(folder, name))
-    if spec is None:
+    if spec is None or spec.loader is None:
         raise ImportError(f"--python {file}: found no Python file")
     module = importlib.util.module_from_spec(spec)
     sys.modules[module_name] = module
@@ -39,10 +40,10 @@ def _line(error: BaseException, file: str) -> int:
         return error.lineno
     frames = [frame for frame in traceback.extract_tb(error.__traceback__)
               if os.path.abspath(frame.filename) == os.path.abspath(file)]
-    return frames[-1].lineno if frames else 1
+    return frames[-1].lineno or 1 if frames else 1
 
 
-def main(arguments=None) -> int:
+def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command line and returns its exit status."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends at a closed pipe, as the program does
     return _simbench.command_line(["simbench", *sys.argv[1:]] if arguments is None else arguments)

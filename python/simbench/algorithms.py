@@ -20,7 +20,9 @@ import dataclasses
 import inspect
 import math
 import types
-from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
+from typing import (
+    Any, Callable, Dict, Iterable, NamedTuple, NoReturn, Optional, Sequence, TypeVar, Union,
+)  # fmt: skip
 
 from . import _simbench
 from .errors import MissingPackage
@@ -29,6 +31,8 @@ from .host import Camera, Host
 Sample = _simbench.Sample
 Frame = _simbench.Frame
 
+_Class = TypeVar("_Class", bound=type)
+_Function = TypeVar("_Function", bound=Callable[..., Any])
 _COLUMNS = ("sensor_ns", "arrival_ns", "arrival_steady_ns", "exposure_us")
 
 
@@ -84,12 +88,12 @@ class Pipeline:
     gathering: Optional[str]
 
 
-def _place(function: Callable) -> tuple[str, int]:
+def _place(function: Callable[..., Any]) -> tuple[str, int]:
     code = inspect.unwrap(function).__code__
     return code.co_filename, code.co_firstlineno
 
 
-def _refuse(function: Any, kind: str, text: str) -> None:
+def _refuse(function: Any, kind: str, text: str) -> NoReturn:
     try:
         file, line = inspect.getsourcefile(function), inspect.getsourcelines(function)[1]
     except (OSError, TypeError):
@@ -97,7 +101,7 @@ def _refuse(function: Any, kind: str, text: str) -> None:
     raise TypeError(f"{kind} ({file}:{line}): {text}")
 
 
-def _parameter(name: str, value: Any) -> dict:
+def _parameter(name: str, value: Any) -> Dict[str, Any]:
     stated = value if isinstance(value, Parameter) else Parameter(value)
     default = stated.default
     if not isinstance(default, (bool, int, float, str)):
@@ -113,24 +117,26 @@ def _summary(documented: Any) -> str:
     return lines[0] if lines and documented.__doc__ else "an algorithm in Python"
 
 
-def _definition(name: str, decorated: Any, kind: str, method: Callable, parameters: dict) -> dict:
+def _definition(name: str, decorated: Any, kind: str, method: Callable[..., Any],
+                parameters: Dict[str, Any]) -> Dict[str, Any]:
     file, line = _place(method)
     return {"name": name, "summary": _summary(decorated), "kind": kind, "method": method.__name__,
             "file": file, "line": line, "needs": [],
             "parameters": [_parameter(*item) for item in parameters.items()]}
 
 
-def _check_call(owner: Any, kind: str, function: Callable, shape: str, positional: Sequence[Any],
-                named: Sequence[str] = ()) -> None:
+def _check_call(owner: Any, kind: str, function: Callable[..., Any], shape: str,
+                positional: Sequence[Any], named: Iterable[str] = ()) -> None:
     try:
         inspect.signature(function).bind(*positional, **dict.fromkeys(named))
     except TypeError as error:
         _refuse(owner, kind, f"{shape} cannot be called: {error}")
 
 
-def _maker(cls: type, kind: str, parameters: dict, **further: Any) -> Callable:
+def _maker(cls: type, kind: str, parameters: Dict[str, Any], **further: Any) -> Callable[..., Any]:
     """What makes an object: by __init__, or, where the class has none, by attributes."""
-    if cls.__init__ is object.__init__:
+    initialize: Callable[..., None] = getattr(cls, "__init__")
+    if initialize is object.__init__:
 
         def with_attributes(**values: Any) -> Any:
             made = cls()
@@ -140,11 +146,11 @@ def _maker(cls: type, kind: str, parameters: dict, **further: Any) -> Callable:
 
         return with_attributes
     names = {**further, **parameters}
-    _check_call(cls, kind, cls.__init__, f"__init__(self, {', '.join(names)})", [None], names)
+    _check_call(cls, kind, initialize, f"__init__(self, {', '.join(names)})", [None], names)
     return cls
 
 
-def _method(cls: type, kind: str, name: str) -> Callable:
+def _method(cls: type, kind: str, name: str) -> Callable[..., Any]:
     method = inspect.getattr_static(cls, name)
     if not inspect.isfunction(method):
         _refuse(cls, kind, f"{name}: found {type(method).__name__}, allowed: a plain method")
@@ -159,16 +165,18 @@ def _check_is_class(cls: Any, decorator: str) -> str:
     return f"class {cls.__name__}"
 
 
-def device_time(name: str, **parameters: Any) -> Callable[[type], type]:
+def device_time(name: str, **parameters: Any) -> Callable[[_Class], _Class]:
     """Registers a class that tells when the frames of one camera were exposed.
 
     The class has stamp(self, sample), which returns the global stamp of the newest frame, or
     stamp_all(self, sensor_ns, arrival_ns), which gets all frames of the recording as arrays and
     returns as many stamps. It may have on_poll(self, poll), on_adjustment(self, adjustment),
-    `from_first_frame = True` and `relative = True`.
+    `from_first_frame = True` and `relative = True`. Stamps are ns.
+
+    name: under which scenarios and pipelines know it. parameters: its defaults, by their names.
     """
 
-    def register(cls: type) -> type:
+    def register(cls: _Class) -> _Class:
         kind = _check_is_class(cls, "device_time")
         methods = [method for method in ("stamp", "stamp_all") if hasattr(cls, method)]
         if len(methods) != 1:
@@ -191,13 +199,13 @@ def device_time(name: str, **parameters: Any) -> Callable[[type], type]:
         for trait in ("from_first_frame", "relative"):
             definition[trait] = bool(getattr(cls, trait, False))
         _simbench.register_device_time(definition)
-        cls.simbench_name = name
+        setattr(cls, "simbench_name", name)
         return cls
 
     return register
 
 
-def _columns(cls: type, kind: str, method: Callable) -> list[str]:
+def _columns(cls: type, kind: str, method: Callable[..., Any]) -> list[str]:
     columns = list(inspect.signature(method).parameters)[1:]
     unknown = [column for column in columns if column not in _COLUMNS]
     if unknown or not columns:
@@ -231,15 +239,17 @@ def stamps_in(result: Any, frames: int) -> Union[str, tuple[bool, bytes]]:
     return result.dtype == numpy.int64, numpy.asarray(result).tobytes()
 
 
-def gathering(name: str, **parameters: Any) -> Callable[[type], type]:
+def gathering(name: str, **parameters: Any) -> Callable[[_Class], _Class]:
     """Registers a class that finds the frames that belong together.
 
     push(self, frame) gets the frames of all cameras in order of arrival and returns the sets that
     are now known, a list of lists of frames, or None. The class is made with
     setup=GatheringSetup(...) and its parameters.
+
+    name, parameters: as for device_time().
     """
 
-    def register(cls: type) -> type:
+    def register(cls: _Class) -> _Class:
         kind = _check_is_class(cls, "gathering")
         if not hasattr(cls, "push"):
             _refuse(cls, kind, "found no method, allowed: push(self, frame)")
@@ -250,73 +260,79 @@ def gathering(name: str, **parameters: Any) -> Callable[[type], type]:
         definition["make"] = _maker(cls, kind, defaults, setup=None)
         definition["from_first_frame"] = bool(getattr(cls, "from_first_frame", False))
         _simbench.register_gathering(definition)
-        cls.simbench_name = name
+        setattr(cls, "simbench_name", name)
         return cls
 
     return register
 
 
-def host_sync(name: str, *, server: Optional[Callable] = None, needs: Sequence[str] = (),
-              **parameters: Any) -> Callable[[Callable], Callable]:
+def host_sync(name: str, *, server: Optional[Callable[..., Any]] = None, needs: Sequence[str] = (),
+              **parameters: Any) -> Callable[[_Function], _Function]:
     """Registers an `async def function(host, settings)` that disciplines a slave's clock.
 
     The master answers host.channel(0).exchange(...) by itself. With server=, an
     `async def serve(host, client, settings)`, the algorithm answers instead: one runs on the master
     for each slave. The capture begins when all have returned; with a parameter warm_up_s it is a
     service, whose capture begins after that time and which goes on for ever.
+
+    name, parameters: as for device_time(). needs: what its hosts must have.
     """
 
-    def register(function: Callable) -> Callable:
+    def register(function: _Function) -> _Function:
         definition = _function("host_sync", name, function, parameters, "host, settings")
         definition["needs"] = list(needs)
         can_exchange = server is None
 
-        def follow(port: Any, settings: dict, _client: Optional[int]) -> Any:
+        def follow(port: Any, settings: Dict[str, Any], _client: Optional[int]) -> Any:
             return function(Host(port, can_exchange), types.SimpleNamespace(**settings))
 
         definition["make"] = follow
         definition["server"] = None
         if server is not None:
+            answers = server
             serving = _function("host_sync", name, server, parameters, "host, client, settings")
 
-            def serve(port: Any, settings: dict, client: Optional[int]) -> Any:
-                return server(Host(port, False), client, types.SimpleNamespace(**settings))
+            def serve(port: Any, settings: Dict[str, Any], client: Optional[int]) -> Any:
+                return answers(Host(port, False), client, types.SimpleNamespace(**settings))
 
             serving["make"] = serve
             definition["server"] = serving
         _simbench.register_host_sync(definition)
-        function.simbench_name = name
+        setattr(function, "simbench_name", name)
         return function
 
     return register
 
 
 def capture_alignment(name: str, *, needs: Sequence[str] = (),
-                      **parameters: Any) -> Callable[[Callable], Callable]:
+                      **parameters: Any) -> Callable[[_Function], _Function]:
     """Registers an `async def function(host, camera, settings)` that steers a camera's exposures.
 
     One runs for each camera, on its host, from the start of the cameras until the capture ends; it
     may return before. Datagrams between master and slaves are those of this stage alone.
+
+    name, parameters: as for device_time(). needs: what its hosts must have besides frame_control.
     """
 
-    def register(function: Callable) -> Callable:
+    def register(function: _Function) -> _Function:
         definition = _function("capture_alignment", name, function, parameters,
                                "host, camera, settings")
         definition["needs"] = ["frame_control", *needs]
 
-        def steer(port: Any, settings: dict, place: int) -> Any:
+        def steer(port: Any, settings: Dict[str, Any], place: int) -> Any:
             return function(Host(port, False), Camera(port, place),
                             types.SimpleNamespace(**settings))
 
         definition["make"] = steer
         _simbench.register_capture_alignment(definition)
-        function.simbench_name = name
+        setattr(function, "simbench_name", name)
         return function
 
     return register
 
 
-def _function(stage: str, name: str, function: Callable, parameters: dict, shape: str) -> dict:
+def _function(stage: str, name: str, function: Callable[..., Any], parameters: Dict[str, Any],
+              shape: str) -> Dict[str, Any]:
     kind = "async def"
     if not inspect.iscoroutinefunction(function):
         raise TypeError(f"{stage} {name}: found {function!r}, allowed: an async def function")
@@ -330,14 +346,15 @@ def pipeline(name: str, *, base: Optional[str] = None, host_sync: Any = None,
              gathering: Any = None) -> Pipeline:
     """A row of its own name: the base pipeline with these stages in place of its own.
 
-    A stage is the name of an algorithm, or a class or function that is decorated; a
-    capture_alignment of "" is none. Without `base` the scenario's first pipeline is the base.
+    A stage (host_sync, capture_alignment, device_time, gathering) is the name of an algorithm, or a
+    class or function that is decorated; a capture_alignment of "" is none. Without `base` the
+    scenario's first pipeline is the base. name: that of the row.
     """
 
     def name_of(stage: Any) -> Optional[str]:
         if stage is None or isinstance(stage, str):
             return stage
-        found = getattr(stage, "simbench_name", None)
+        found: Optional[str] = getattr(stage, "simbench_name", None)
         if found is None:
             raise TypeError(f"pipeline {name}: found {stage!r}, allowed: the name of an algorithm, "
                             "or a class or function that is decorated")

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from . import _simbench
+from .errors import InputError, MissingPackage
 from .progress import Progress
-from .results import Path, _warn, _whole, request_of
+from .results import Path, _add_programs, _warn, _whole, request_of, use_python
 from .tables import notebook_html, page_text, records, table
+
+
+#: The curves over tau.
+CURVES = ("adev", "mdev", "hdev", "tdev_ms", "mtie_ms")
 
 
 class Clocks:
@@ -29,11 +34,11 @@ class Clocks:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench clocks --format json` prints it."""
-        return json.loads(self._run.json())
+        return dict(json.loads(self._run.json()))
 
     @property
     def table(self) -> Any:
-        """A row a pipeline, with the median of each metric."""
+        """A row a pipeline, with the median of each metric, whose unit its name ends with."""
         rows: Dict[str, Dict[str, Any]] = {}
         for line in records(self._run.csv()):
             row = rows.setdefault(line["pipeline"], {"pipeline": line["pipeline"]})
@@ -48,43 +53,98 @@ class Clocks:
 
     @property
     def time_errors(self) -> Any:
-        """Of the first seed's slaves: pipeline, seed, time_s, host, te_s."""
+        """The time errors of the first seed's slaves: pipeline, seed, time_s, host, te_s."""
         return table(records(self._run.series_csv()))
 
     def curve(self, measure: str) -> Any:
-        """adev, mdev, hdev, tdev_ms or mtie_ms: pipeline, tau_s, value."""
-        return table(
-            [
-                {name: line[name] for name in ("pipeline", "tau_s", "value")}
-                for line in records(self._run.csv())
-                if line["measure"] == measure and line["tau_s"] == line["tau_s"]
-            ]
-        )
+        """The points of a curve, `measure`: adev, mdev, hdev, tdev_ms or mtie_ms. A row a point:
+        pipeline, tau_s, value."""
+        return table([{"pipeline": pipeline, "tau_s": tau, "value": value}
+                      for pipeline, points in self._curves(measure).items()
+                      for tau, value in points.items()])
+
+    def _curves(self, measure: str) -> Dict[str, Dict[float, float]]:
+        """By pipeline and tau."""
+        if measure not in CURVES:
+            raise InputError(f"measure: found {measure!r}, allowed: {', '.join(CURVES)}")
+        curves: Dict[str, Dict[float, float]] = {}
+        for line in records(self._run.csv()):
+            if line["measure"] == measure and line["tau_s"] == line["tau_s"]:
+                curves.setdefault(line["pipeline"], {})[line["tau_s"]] = line["value"]
+        return curves
 
     @property
     def adev(self) -> Any:
-        """The Allan deviation."""
+        """The overlapping Allan deviation, without a unit."""
         return self.curve("adev")
 
     @property
     def mdev(self) -> Any:
-        """The modified Allan deviation."""
+        """The modified Allan deviation, without a unit."""
         return self.curve("mdev")
 
     @property
     def hdev(self) -> Any:
-        """The Hadamard deviation."""
+        """The overlapping Hadamard deviation, without a unit."""
         return self.curve("hdev")
 
     @property
     def tdev_ms(self) -> Any:
-        """The time deviation."""
+        """The time deviation in ms."""
         return self.curve("tdev_ms")
 
     @property
     def mtie_ms(self) -> Any:
-        """The maximum time interval error."""
+        """The maximum time interval error in ms."""
         return self.curve("mtie_ms")
+
+    def plot(self, measure: str = "adev", ax: Any = None) -> Any:
+        """A curve over tau on logarithmic axes, a line a pipeline. `measure`: adev, mdev, hdev,
+        tdev_ms or mtie_ms. Returns matplotlib's axes; `ax`: where to draw."""
+        try:
+            from matplotlib import pyplot
+        except ImportError as error:
+            raise MissingPackage(
+                "plot() needs matplotlib, which is missing: " + str(error)
+            ) from None
+        if ax is None:
+            _, ax = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
+        for pipeline, points in self._curves(measure).items():
+            ax.plot(list(points), list(points.values()), "o-", label=pipeline)
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+        ax.set_xlabel("tau, s")
+        ax.set_ylabel(f"{measure[:-3].upper()}, ms" if measure.endswith("_ms") else measure.upper())
+        ax.grid(True, alpha=0.3)
+        ax.legend(fontsize="small")
+        return ax
+
+    @property
+    def dataset(self) -> Any:
+        """An xarray.Dataset of the shape (pipeline, tau_s) with adev, mdev, hdev (no unit), tdev_ms
+        and mtie_ms. NaN: no such value at this tau."""
+        return self.to_xarray()
+
+    def to_xarray(self) -> Any:
+        """See `dataset`. Raises MissingPackage without xarray."""
+        try:
+            import xarray
+        except ImportError as error:
+            raise MissingPackage(
+                "to_xarray() needs xarray, which is missing: " + str(error)
+            ) from None
+        curves = {measure: self._curves(measure) for measure in CURVES}
+        pipelines = list(dict.fromkeys(name for curve in curves.values() for name in curve))
+        taus = sorted({tau for curve in curves.values() for points in curve.values()
+                       for tau in points})
+        nan = float("nan")
+        return xarray.Dataset(
+            {measure: (("pipeline", "tau_s"),
+                       [[curve.get(name, {}).get(tau, nan) for tau in taus] for name in pipelines],
+                       {"units": "ms"} if measure.endswith("_ms") else {})
+             for measure, curve in curves.items()},
+            coords={"pipeline": pipelines, "tau_s": ("tau_s", taus, {"units": "s"})},
+        )  # fmt: skip
 
     def save(self, folder: Path) -> None:
         """Writes the archive that `simbench clocks --output` writes."""
@@ -102,19 +162,35 @@ def clocks(
     pipelines: Optional[Sequence[str]] = None,
     seeds: int = 8,
     *,
-    duration_s: int = 36_000,
+    duration_s: Optional[int] = None,
     from_s: int = 300,
     set: Optional[Mapping[str, Any]] = None,
     first_seed: int = 1,
     jobs: int = 0,
+    program: Union[str, Sequence[str]] = (),
+    program_log: Optional[Path] = None,
+    python: Union[Path, Sequence[Path]] = (),
+    figure: Optional[Path] = None,
     progress: Optional[bool] = None,
 ) -> Clocks:
     """Runs the hosts' clocks alone, as `simbench clocks` does: from a cold start for duration_s
-    seconds, then 600 s without the master and 3600 s with it again. Seconds from from_s on count."""
+    seconds, then 600 s without the master and 3600 s with it again.
+
+    scenario, pipelines, seeds, first_seed, set, jobs, program, program_log, python: as for run().
+    duration_s: None: 36000; with real programs from 360 to 3600, mostly 600, and no loss.
+    from_s: the second from which spread, errors and stability count.
+    figure: a .svg or .pdf file to draw ADEV, TDEV and MTIE to, by gnuplot.
+    progress: show it; None: where tqdm is installed and somebody looks.
+    """
+    use_python(python)
     request = request_of("clocks", scenario, pipelines, seeds, first_seed, set, jobs)
+    _add_programs(request, program, program_log)
     most = 31_000_000
-    duration, start = _whole("duration_s", duration_s, 1, most), _whole("from_s", from_s, 0, most)
+    duration = None if duration_s is None else _whole("duration_s", duration_s, 1, most)
+    start = _whole("from_s", from_s, 0, most)
     with Progress(progress, "run") as shown:
         result = Clocks(_simbench.run_clocks(request, duration, start, shown.callback))
     _warn(result.notes)
+    if figure is not None:
+        result._run.draw(os.fspath(figure))
     return result

@@ -12,7 +12,7 @@ nanoseconds; timeouts and sleeps are milliseconds.
 """
 
 import types
-from typing import FrozenSet, NamedTuple, Optional
+from typing import Any, FrozenSet, Generator, NamedTuple, Optional, Tuple
 
 _NEVER_MS = 365 * 86400e3
 
@@ -59,7 +59,8 @@ class CrossStamp(NamedTuple):
 
 
 @types.coroutine
-def _ask(*request):
+def _ask(*request: Any) -> Generator[Any, Any, Any]:
+    """Asks the world; what it answers is of the kind that the request names."""
     return (yield request)
 
 
@@ -72,7 +73,8 @@ class Clock:
 
     async def now(self) -> int:
         """Its reading."""
-        return await _ask("now")
+        answer: int = await _ask("now")
+        return answer
 
     async def set(self, time_ns: float) -> None:
         """Sets it."""
@@ -96,7 +98,8 @@ class NetworkCard:
 
     async def cross_stamp(self) -> CrossStamp:
         """Reads it between two readings of the system clock."""
-        return await _ask("cross_stamp")
+        answer: CrossStamp = await _ask("cross_stamp")
+        return answer
 
     async def step(self, offset_ns: float) -> None:
         """Adds the offset at once."""
@@ -112,17 +115,19 @@ class Channel:
 
     __slots__ = ("_at", "_can_exchange")
 
-    def __init__(self, peer: int, stream: bool, can_exchange: bool):
+    def __init__(self, peer: int, stream: bool, can_exchange: bool) -> None:
         self._at = (peer, stream)
         self._can_exchange = can_exchange
 
     async def send(self, message: bytes) -> int:
         """Sends it and returns its number, for transmit_stamp()."""
-        return await _ask("send", *self._at, bytes(message))
+        answer: int = await _ask("send", *self._at, bytes(message))
+        return answer
 
     async def receive(self, timeout_ms: float = _NEVER_MS) -> Optional[Message]:
         """The next message, or None after the timeout."""
-        return await _ask("receive", *self._at, _ns(timeout_ms))
+        answer: Optional[Message] = await _ask("receive", *self._at, _ns(timeout_ms))
+        return answer
 
     async def exchange(self, message: bytes = b"", timeout_ms: float = 1000) -> Optional[Reply]:
         """Asks the master for its time. None if no answer comes in time.
@@ -132,21 +137,24 @@ class Channel:
         if not self._can_exchange:
             raise TypeError("exchange() asks the master's own answerer, which runs only where "
                             "host_sync has no server=; use send() and receive()")
-        return await _ask("exchange", *self._at, bytes(message), _ns(timeout_ms))
+        answer: Optional[Reply] = await _ask("exchange", *self._at, bytes(message), _ns(timeout_ms))
+        return answer
 
     async def transmit_stamp(self, message: int, timeout_ms: float = 10) -> Optional[int]:
         """When that message left, if the host stamps."""
-        return await _ask("transmit_stamp", *self._at, message, _ns(timeout_ms))
+        answer: Optional[int] = await _ask("transmit_stamp", *self._at, message, _ns(timeout_ms))
+        return answer
 
     async def hardware_transmit_stamp(self, message: int, timeout_ms: float = 10) -> Optional[int]:
         """When it passed the network card, on the card's clock, if that stamps."""
-        return await _ask("hardware_transmit_stamp", *self._at, message, _ns(timeout_ms))
+        answer: Optional[int] = await _ask("hardware_transmit_stamp", *self._at, message, _ns(timeout_ms))
+        return answer
 
 
 class Host:
     """A host of the rig: 0 is the master, the others are its slaves."""
 
-    def __init__(self, port, can_exchange: bool):
+    def __init__(self, port: Any, can_exchange: bool) -> None:
         self._port = port
         self._can_exchange = can_exchange
         self.id: int = port.id
@@ -168,16 +176,19 @@ class Host:
     @property
     def steady_ns(self) -> int:
         """The host's oscillator, which nothing sets. Reading it costs nothing."""
-        return self._port.steady_ns()
+        answer: int = self._port.steady_ns()
+        return answer
 
     def random(self) -> float:
         """A number from 0 to 1, the same in every run of a seed, as those of Python are not."""
-        return self._port.random()
+        answer: float = self._port.random()
+        return answer
 
     @property
-    def stored_frequency(self):
+    def stored_frequency(self) -> Optional[Tuple[float, float]]:
         """(ppb, its likely error) of the clock service's last run, or None."""
-        return self._port.stored_frequency()
+        answer: Optional[Tuple[float, float]] = self._port.stored_frequency()
+        return answer
 
     def failed(self, why: str) -> None:
         """Reports that the clock could not be synchronised, and what would help."""
@@ -219,7 +230,7 @@ class Camera:
     It acts `latency_frames` frames later or more, may be lost, and is rounded to `granularity_ns`.
     """
 
-    def __init__(self, port, place: int):
+    def __init__(self, port: Any, place: int) -> None:
         self._port = port
         self._place = place
         facts = port.camera(place)
@@ -234,23 +245,28 @@ class Camera:
 
     async def next_frame(self) -> Exposure:
         """Waits for it, however long."""
-        return await _ask("next_frame", self._place)
+        answer: Exposure = await _ask("next_frame", self._place)
+        return answer
 
     async def adjust_frame(self, by_ns: float) -> bool:
         """One frame is longer by this, or shorter if it is negative."""
-        return await _ask("adjust_frame", self._place, round(by_ns))
+        answer: bool = await _ask("adjust_frame", self._place, round(by_ns))
+        return answer
 
     async def insert_frame(self, length_ns: float) -> bool:
         """One frame of that length, with an exposure as long as that allows."""
-        return await _ask("insert_frame", self._place, round(length_ns))
+        answer: bool = await _ask("insert_frame", self._place, round(length_ns))
+        return answer
 
     async def set_frame_length(self, length_ns: float) -> bool:
         """All frames from now on."""
-        return await _ask("frame_length", self._place, round(length_ns))
+        answer: bool = await _ask("frame_length", self._place, round(length_ns))
+        return answer
 
     async def start_at(self, at_ns: float) -> bool:
         """Stops the camera; its next exposure begins when the system clock reads that."""
-        return await _ask("start_at", self._place, round(at_ns))
+        answer: bool = await _ask("start_at", self._place, round(at_ns))
+        return answer
 
     def report(self, aligned: bool, message: str = "") -> None:
         """What the algorithm thinks it has reached; the message says what would help."""

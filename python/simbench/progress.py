@@ -5,18 +5,32 @@ from __future__ import annotations
 import sys
 import time
 from types import TracebackType
-from typing import Any, Optional, Type
+from typing import Any, Callable, Optional, Type, cast
 
 #: Seconds after which a bar appears.
 _PATIENCE_S = 1.0
 
 
-def _somebody_looks() -> bool:
-    if sys.stderr is not None and sys.stderr.isatty():
-        return True
+def _in_notebook() -> bool:
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return shell is not None and type(shell).__name__ == "ZMQInteractiveShell"
+
+
+def _somebody_looks() -> bool:
+    return (sys.stderr is not None and sys.stderr.isatty()) or _in_notebook()
+
+
+def _bar() -> Callable[..., Any]:
+    """tqdm's bar: the notebook's where it can be drawn, else that of lines. tqdm.auto would choose
+    alike, and warns of a notebook without ipywidgets. Raises ImportError."""
+    from tqdm.std import tqdm
+
+    if not _in_notebook():
+        return cast(Callable[..., Any], tqdm)
+    from tqdm import notebook
+
+    return cast(Callable[..., Any], tqdm if notebook.IProgress is None else notebook.tqdm)
 
 
 class Progress:
@@ -29,23 +43,23 @@ class Progress:
         self._unit = unit
         self._bar: Any = None
         self._start = time.monotonic()
-        self._make = None
+        self._make: Optional[Callable[..., Any]] = None
         if wanted or (wanted is None and _somebody_looks()):
             try:
-                from tqdm.auto import tqdm
+                self._make = _bar()
             except ImportError:
                 if wanted:
                     self._make = _Lines
-            else:
-                self._make = tqdm
         self.callback = self._update if self._make is not None else None
 
     def _update(self, done: int, total: int) -> None:
         if self._bar is None:
-            if time.monotonic() - self._start < _PATIENCE_S or done == total:
+            if (self._make is None or time.monotonic() - self._start < _PATIENCE_S
+                    or done == total):
                 return
             self._bar = self._make(total=total, unit=self._unit, leave=False)
-        self._bar.total = total
+        if total != self._bar.total or done < self._bar.n:  # the next part of the work
+            self._bar.reset(total=total)
         self._bar.update(done - self._bar.n)
 
     def __enter__(self) -> "Progress":
@@ -73,6 +87,9 @@ class _Lines:
         if tenth > self._tenth:
             self._tenth = tenth
             print(f"{self.n} of {self.total} {self._unit}s", file=sys.stderr)
+
+    def reset(self, total: int) -> None:
+        self.total, self.n, self._tenth = total, 0, 0
 
     def close(self) -> None:
         pass

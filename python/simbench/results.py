@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+import tempfile
 import warnings
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _simbench
 from .algorithms import Pipeline
-from .errors import InputError, MissingPackage
+from .errors import InputError, MissingPackage, OutputError
 from .progress import Progress
 from .tables import array, notebook_html, page_text, records, table
 
@@ -19,9 +21,10 @@ _MOST_JOBS = 4096
 _MOST_PLOTTED = 24
 
 
-def _warn(notes: Sequence[str]) -> None:
+def _warn(notes: Sequence[str], depth: int = 1) -> None:
+    """Of the caller of whoever is `depth` calls above."""
     for note in notes:
-        warnings.warn(note, stacklevel=3)
+        warnings.warn(note, stacklevel=2 + depth)
 
 
 def _whole(name: str, value: Any, low: int, high: int) -> int:
@@ -46,7 +49,8 @@ def request_of(
         raise InputError(f"pipelines: found the text {pipelines!r}, allowed: a list of names")
     request = _simbench.RunRequest()
     request.scenario = os.fspath(scenario)
-    request.pipelines = [getattr(pipeline, "name", pipeline) for pipeline in pipelines or []]
+    request.pipelines = [pipeline.name if isinstance(pipeline, Pipeline) else pipeline
+                         for pipeline in pipelines or []]
     request.sets = [(pointer, json.dumps(value)) for pointer, value in (sets or {}).items()]
     request.sets += [
         ("/pipelines/-", json.dumps(_stages(pipeline, request)))
@@ -61,6 +65,48 @@ def request_of(
     request.command += [f"--seeds={seeds}", f"--first-seed={first_seed}"]
     request.command += [f"--set={pointer}={value}" for pointer, value in request.sets]
     return request
+
+
+def changes_of(
+    function: str,
+    scenario: Optional[Path],
+    pipelines: Optional[Sequence[Union[str, Pipeline]]],
+    sets: Optional[Mapping[str, Any]],
+) -> Tuple[Optional[str], List[str]]:
+    """The values of --pipelines and --set of a command line."""
+    if scenario is None:  # a study names its own
+        if any(isinstance(pipeline, Pipeline) for pipeline in pipelines or []):
+            raise InputError("pipelines: found a Pipeline and no scenario, allowed: names")
+        scenario = ""
+    request = request_of(function, scenario, pipelines, 1, 1, sets, 0)
+    return ",".join(request.pipelines) or None, [f"{at}={value}" for at, value in request.sets]
+
+
+def use_python(files: Union[Path, Sequence[Path]]) -> None:
+    """Registers the algorithms of these files, as --python does."""
+    from .__main__ import import_algorithms
+
+    for file in [files] if isinstance(files, (str, os.PathLike)) else files:
+        try:
+            import_algorithms(os.fspath(file))
+        except ImportError as error:
+            raise InputError(str(error).replace("--python", "python:", 1)) from error.__cause__
+
+
+def _add_programs(
+    request: _simbench.RunRequest, programs: Union[str, Sequence[str]], log: Optional[Path]
+) -> None:
+    """Pipelines of real programs, as --program and --program-log."""
+    _simbench.keep_program_files(os.fspath(log) if log is not None else "")
+    named = [programs] if isinstance(programs, str) else list(programs)
+    if not named:
+        return
+    sets, names, notes = _simbench.program_pipelines(
+        request.scenario, request.sets, named, request.pipelines
+    )
+    request.sets = [*request.sets, *sets]
+    request.pipelines = names
+    _warn(notes, 2)
 
 
 def _stages(pipeline: Pipeline, request: _simbench.RunRequest) -> Dict[str, Any]:
@@ -84,9 +130,18 @@ def _stages(pipeline: Pipeline, request: _simbench.RunRequest) -> Dict[str, Any]
 class Result:
     """The results of all pipelines over all seeds: what `simbench run` prints and writes."""
 
-    def __init__(self, run: _simbench.Run, progress: Optional[bool] = None) -> None:
+    def __init__(
+        self,
+        run: _simbench.Run,
+        progress: Optional[bool] = None,
+        archive: Optional[str] = None,
+        kept: Any = None,
+    ) -> None:
+        """archive: where it was read. kept: what owns that folder, if it is the Result's own."""
         self._run = run
         self._progress = progress
+        self._archive = archive
+        self._kept = kept
         self._html: Optional[str] = None
 
     @property
@@ -116,7 +171,7 @@ class Result:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as results.json has it."""
-        return json.loads(self._run.json())
+        return dict(json.loads(self._run.json()))
 
     @property
     def answer(self) -> str:
@@ -136,8 +191,8 @@ class Result:
             return self._run.text(format, detail, shown.callback)
 
     def frames(self, pipeline: str, seed: Optional[int] = None) -> Any:
-        """Every frame of one run: a structured NumPy array, read-only, in the memory of the
-        libraries.
+        """Every frame of one run, of this pipeline and seed (None: the first): a structured NumPy
+        array of the shape (frames,), read-only, in the memory of the libraries.
 
         Fields: camera, host, counter, pulse (-1: none or unknown), evaluated, in_warm_up; sensor_ms
         and frame_ms on the device's clock; backend_ms and arrival_ms on the host's; global_ms, the
@@ -192,7 +247,13 @@ class Result:
 
     def save(self, folder: Path) -> None:
         """Writes the archive that `simbench run --output` writes."""
-        self._run.save(os.fspath(folder))
+        if self._kept is None or self._archive is None:
+            self._run.save(os.fspath(folder))
+            return
+        try:
+            shutil.copytree(self._archive, folder)
+        except OSError as error:
+            raise OutputError(f"{os.fspath(folder)}: {error.strerror or error}") from error
 
     def __repr__(self) -> str:
         return page_text(self.text)
@@ -218,7 +279,7 @@ class Comparison:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench compare --format json` prints it."""
-        return json.loads(self._comparison.json())
+        return dict(json.loads(self._comparison.json()))
 
     def __repr__(self) -> str:
         return page_text(self._comparison.text)
@@ -230,38 +291,84 @@ class Comparison:
 def run(
     scenario: Path,
     pipelines: Optional[Sequence[Union[str, Pipeline]]] = None,
-    seeds: int = 32,
+    seeds: Optional[int] = None,
     *,
     set: Optional[Mapping[str, Any]] = None,
     first_seed: int = 1,
     jobs: int = 0,
+    rank_by: Optional[str] = None,
+    no_levers: bool = False,
+    program: Union[str, Sequence[str]] = (),
+    program_log: Optional[Path] = None,
+    python: Union[Path, Sequence[Path]] = (),
+    backend: str = "sim",
+    rig: Optional[Path] = None,
+    key_file: Optional[Path] = None,
     keep_pulses: bool = True,
     progress: Optional[bool] = None,
 ) -> Result:
     """Runs pipelines of a scenario over many seeds, as `simbench run` does.
 
     scenario: a name (list_scenarios()) or the path of a JSON file.
-    pipelines: names of the scenario's, "host_sync[+capture_alignment]+device_time+gathering", or simbench.pipeline();
-        None: all.
+    pipelines: names of the scenario's, "host_sync[+capture_alignment]+device_time+gathering", or
+        simbench.pipeline(); None: all.
+    seeds: how many; None: 32, on a real rig 1. first_seed: the first.
     set: changes of the scenario, {"/trigger/rate_hz": 30}.
     jobs: threads; 0: one for every core.
+    rank_by: rank the pipelines by this metric.
+    no_levers: the answer does not look for what would improve the best pipeline.
+    program: also pipelines of real programs, ["mine=examples/cristian.json"], or names of built-in
+        ones; program_log: a folder for what they print.
+    python: files with algorithms, which are imported first.
+    backend, rig, key_file: "hardware" captures on the rig of this rig file, whose hosts run
+        `simbench node`, `seeds` times each pipeline.
     keep_pulses: keep what Result.save() needs, 24 bytes for each pulse of each run.
     progress: show it; None: where tqdm is installed and somebody looks.
 
     Raises InputError, KeyboardInterrupt at Ctrl-C. Doubts about the scenario become warnings.
     """
+    use_python(python)
+    if seeds is None:
+        seeds = 1 if backend == "hardware" else 32
     request = request_of("run", scenario, pipelines, seeds, first_seed, set, jobs)
+    if backend != "sim" or rig is not None or key_file is not None:
+        return _run_on_rig(request, backend, rig, key_file, progress)
+    _add_programs(request, program, program_log)
     request.keep_pulses = bool(keep_pulses)
+    request.rank_by = rank_by or ""
+    request.no_levers = bool(no_levers)
     with Progress(progress, "run") as shown:
         result = Result(_simbench.simulate(request, shown.callback), progress)
     _warn(result.notes)
     return result
 
 
+def _run_on_rig(
+    request: _simbench.RunRequest,
+    backend: str,
+    rig: Optional[Path],
+    key_file: Optional[Path],
+    progress: Optional[bool],
+) -> Result:
+    """Captures on a real rig, by the command, whose archive is read."""
+    from .command import run_command, words_of
+
+    folder = tempfile.TemporaryDirectory(prefix="simbench_")
+    archive = os.path.join(folder.name, "rig")
+    options = words_of(
+        scenario=request.scenario, pipelines=",".join(request.pipelines) or None,
+        set=[f"{pointer}={value}" for pointer, value in request.sets], seeds=request.seeds,
+        first_seed=request.first_seed, backend=backend, rig=rig, key_file=key_file, output=archive,
+    )  # fmt: skip
+    run_command("run", options, progress=progress)
+    return Result(_simbench.load_archive(archive), progress, archive, folder)
+
+
 def load(folder: Path, *, progress: Optional[bool] = None) -> Result:
-    """Reads the archive of a run: a folder of `simbench run --output`, or a results.json."""
+    """Reads the archive of a run, `folder`: one of `simbench run --output`, or a results.json.
+    progress: show that of the Result's work; None: where tqdm is installed and somebody looks."""
     path = os.fspath(folder)
-    result = Result(_simbench.load_archive(path), progress)
+    result = Result(_simbench.load_archive(path), progress, path)
     if result._run.is_clock_run:
         raise InputError(
             f"{path}: found an archive of `simbench clocks`, allowed: one of `simbench run`"
@@ -277,28 +384,38 @@ def compare(
     a: Union[Result, Path],
     b: Union[Result, Path, None] = None,
     *,
-    baseline: Optional[str] = None,
+    with_baseline: Optional[str] = None,
     pipelines: Optional[Sequence[str]] = None,
     smallest_effect: float = 0.05,
     by_index: bool = False,
     different_scenarios: bool = False,
+    baseline: Optional[str] = None,
 ) -> Comparison:
-    """Compares b with a, pipeline by pipeline; or, with a alone, every pipeline with `baseline`, or
-    the second of two `pipelines` with the first. Results or folders of archives."""
+    """Compares b with a, pipeline by pipeline; or, with a alone, every pipeline with `with_baseline`,
+    or the second of two `pipelines` with the first.
+
+    a, b: results or folders of archives.
+    smallest_effect: the smallest difference that matters, as a share of a's mean (the command takes
+        percent).
+    by_index: pair the n-th seed of a with the n-th of b.
+    different_scenarios: the worlds may differ.
+    baseline: another name of with_baseline.
+    """
+    with_baseline = with_baseline if with_baseline is not None else baseline
     options = _simbench.ComparisonOptions()
     options.smallest_effect = smallest_effect
     options.by_index = by_index
     options.different_scenarios = different_scenarios
     names = list(pipelines or [])
     if b is not None:
-        if baseline is not None:
-            raise InputError("baseline: found two results, allowed: one, whose pipelines are compared")
+        if with_baseline is not None:
+            raise InputError("with_baseline: found two results, allowed: one, whose pipelines are compared")
         options.pipelines = names
         return Comparison(_simbench.compare_runs(_as_run(a), _as_run(b), options))
-    if baseline is not None and not names:
-        return Comparison(_simbench.compare_baseline(_as_run(a), baseline, options))
-    if baseline is None and len(names) == 2:
+    if with_baseline is not None and not names:
+        return Comparison(_simbench.compare_baseline(_as_run(a), with_baseline, options))
+    if with_baseline is None and len(names) == 2:
         return Comparison(_simbench.compare_two(_as_run(a), names[0], names[1], options))
     raise InputError(
-        "found one result, allowed with it: either two pipelines or a baseline; or a second result"
+        "found one result, allowed with it: either two pipelines or with_baseline; or a second result"
     )

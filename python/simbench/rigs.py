@@ -7,18 +7,11 @@ import os
 from typing import Any, Dict, List, Optional, Sequence, Union
 
 from . import _simbench
+from .command import Paths, paths_of, repeated, write_text
+from .errors import InputError
 from .progress import Progress
 from .results import Path, Result, _warn
 from .tables import array, notebook_html, page_text, paragraphs, table
-
-Paths = Union[Path, Sequence[Path]]
-
-
-def _paths(of: Paths) -> List[str]:
-    if isinstance(of, (str, os.PathLike)):
-        return [os.fspath(of)]
-    return [os.fspath(path) for path in of]
-
 
 class Inspection:
     """What recordings have: what `simbench inspect` prints."""
@@ -39,11 +32,12 @@ class Inspection:
     @property
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench inspect --format json` prints it."""
-        return json.loads(self._inspection.json())
+        return dict(json.loads(self._inspection.json()))
 
     @property
     def table(self) -> Any:
-        """A row a stream."""
+        """A row a stream: camera, frames, rate, gaps, periods and delays with their units in the
+        names."""
         return table([stream for file in self.data["files"] for stream in file["streams"]])
 
     def frames(self, device_times: Sequence[str] = ()) -> Any:
@@ -82,7 +76,7 @@ class Diagnosis:
 
     @property
     def reason(self) -> str:
-        """Of the verdict, in words."""
+        """Why, in words."""
         return str(self._data["verdict"]["reason"])
 
     @property
@@ -97,9 +91,8 @@ class Diagnosis:
 
     def save_html(self, path: Path) -> None:
         """Writes the page of `simbench diagnose --html`."""
-        with open(path, "w", encoding="utf-8") as file:
-            command = ["simbench", "diagnose", *self._data["files"]]
-            file.write(self._diagnosis.page(command))
+        command = ["simbench", "diagnose", *self._data["files"]]
+        write_text(path, self._diagnosis.page(command))
 
     def __repr__(self) -> str:
         return page_text(self._diagnosis.text)
@@ -108,27 +101,76 @@ class Diagnosis:
         return notebook_html(paragraphs(self._diagnosis.head()) + self._diagnosis.html())
 
 
+def _names(name: str, of: Optional[Sequence[str]]) -> List[str]:
+    if isinstance(of, str):
+        raise InputError(f"{name}: found the text {of!r}, allowed: a list of names")
+    return list(of or [])
+
+
 def replay(
     recordings: Paths,
     *,
     pipelines: Optional[Sequence[str]] = None,
+    topics: Sequence[str] = (),
+    columns: Optional[str] = None,
+    stream: Optional[str] = None,
+    genlock: bool = False,
+    rank_by: Optional[str] = None,
     progress: Optional[bool] = None,
 ) -> Result:
-    """Scores a recording: a folder of `simbench record`, or files of real cameras, whose pipelines
-    are device_time[+gathering]."""
+    """Scores a recording, as `simbench replay` does.
+
+    recordings: a folder of record(), or files of real cameras; topics (of bags) and columns (of CSV)
+        as for inspect().
+    pipelines: of a folder, some of its own; of files, device_time[+gathering]; None: all.
+    stream: of files, which kind; None: the one that most cameras have.
+    genlock: of files: one trigger pulse started all cameras, so that the order of frames tells which
+        belong together.
+    rank_by: rank the pipelines by this metric.
+    progress: show it; None: where tqdm is installed and somebody looks.
+    """
+    paths = paths_of("recordings", recordings)
+    names = _names("pipelines", pipelines)
+    request = _simbench.RecordingToScore()
+    request.inputs = paths
+    request.topics = _names("topics", topics)
+    request.columns = columns or ""
+    request.pipelines = names
+    request.stream = stream or ""
+    request.genlock = bool(genlock)
+    request.rank_by = rank_by or ""
+    request.command = ["python", "simbench.replay", *paths]
     with Progress(progress, "capture") as shown:
-        result = Result(
-            _simbench.score_recording(_paths(recordings), list(pipelines or []), shown.callback),
-            progress,
-        )
+        result = Result(_simbench.score_recording(request, shown.callback), progress)
     _warn(result.notes)
     return result
 
 
-def inspect(recordings: Paths, *, progress: Optional[bool] = None) -> Inspection:
-    """Says what recordings have: streams, frames, clocks, and every stamp."""
-    with Progress(progress, "stamp") as shown:
-        found = Inspection(_simbench.inspect_files(_paths(recordings), shown.callback))
+def inspect(
+    recordings: Paths,
+    *,
+    device_times: Sequence[str] = (),
+    topics: Sequence[str] = (),
+    columns: Optional[str] = None,
+    progress: Optional[bool] = None,
+) -> Inspection:
+    """Says what recordings have: streams, frames, clocks, and every stamp.
+
+    recordings: a recording folder; or bags (RealSense, ROS 1, ROS 2), CSV files, videos, and folders
+        of them.
+    device_times: also the jitter, residual and drift of the stamps by these.
+    topics: of bags only these; none: those that look like a camera's.
+    columns: of CSV files, "sensor=t_camera:us,arrival=t_host:s" (docs/files.md).
+    progress: show it; None: where tqdm is installed and somebody looks.
+    """
+    paths = paths_of("recordings", recordings)
+    with Progress(progress, "byte") as shown:
+        found = Inspection(
+            _simbench.inspect_files(
+                paths, _names("topics", topics), columns or "",
+                _names("device_times", device_times), shown.callback,
+            )
+        )  # fmt: skip
     _warn(found.notes)
     return found
 
@@ -138,17 +180,32 @@ def diagnose(
     *,
     rate_hz: Optional[float] = None,
     one_host: bool = False,
+    clock_log: Union[str, Sequence[str]] = (),
+    topics: Sequence[str] = (),
+    columns: Optional[str] = None,
+    html: Optional[Path] = None,
     clock_logs: Sequence[str] = (),
     progress: Optional[bool] = None,
 ) -> Diagnosis:
-    """Finds out whether the hardware sync of a recorded rig works. rate_hz: the trigger's; None: the
-    rate of most cameras. one_host: one computer stamped all arrivals. clock_logs: logs of the
-    hosts' clocks, "HOST=FILE" each, or a file alone."""
-    with Progress(progress, "stamp") as shown:
+    """Finds out whether the hardware sync of a recorded rig works.
+
+    recordings, topics, columns: as for inspect(); several files are one rig.
+    rate_hz: the trigger's; None: the rate of most cameras.
+    one_host: one computer stamped all arrivals.
+    clock_log: logs of the hosts' clocks, "HOST=FILE" each, or a file alone; clock_logs: the same.
+    html: a file for the page, as Diagnosis.save_html() writes it.
+    progress: show it; None: where tqdm is installed and somebody looks.
+    """
+    paths = paths_of("recordings", recordings)
+    logs = [*repeated("clock_log", clock_log), *_names("clock_logs", clock_logs)]
+    with Progress(progress, "byte") as shown:
         found = Diagnosis(
             _simbench.diagnose_files(
-                _paths(recordings), rate_hz, one_host, list(clock_logs), shown.callback
+                paths, _names("topics", topics), columns or "", rate_hz, bool(one_host), logs,
+                shown.callback,
             )
-        )
+        )  # fmt: skip
     _warn(found.notes)
+    if html is not None:
+        found.save_html(html)
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import html
 import io
-from typing import Any
+from typing import Any, Callable, Optional
 
 from . import _simbench
 from .errors import MissingPackage
@@ -24,7 +24,7 @@ def _cell(column: str, text: str) -> Any:
     if text == "":
         return float("nan")
     try:
-        return int(text) if column in _COUNTS else float(text)
+        return int(text) if column in _COUNTS or column.endswith("_ns") else float(text)
     except ValueError:
         return text
 
@@ -43,7 +43,17 @@ def table(rows: list[dict[str, Any]]) -> Any:
         import pandas
     except ImportError:
         return rows
-    return pandas.DataFrame(rows)
+    frame = pandas.DataFrame(rows)
+    for name in frame.columns:
+        if name.endswith("_ns") and all(_is_whole(row[name]) for row in rows):
+            # Whole nanoseconds since 1970 are more than a float holds.
+            whole = [int(row[name]) if row[name] == row[name] else None for row in rows]
+            frame[name] = pandas.array(whole, dtype="Int64")
+    return frame
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, int) or value != value
 
 
 def array(rows: _simbench.Rows) -> Any:
@@ -74,11 +84,17 @@ def paragraphs(lines: list[str]) -> str:
     return "".join(f"<p>{html.escape(line)}</p>" for line in lines)
 
 
-def page_text(text_of: Any) -> str:
-    """What text_of() returns, for a terminal of this width."""
+def page_columns() -> Optional[int]:
+    """The width of the terminal; None where there is none."""
     import shutil
     import sys
 
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    _simbench.set_page_width(width)
-    return str(text_of()).rstrip("\n")
+    if sys.stdout is None or not sys.stdout.isatty():
+        return None
+    return shutil.get_terminal_size().columns
+
+
+def page_text(text_of: Callable[[], str]) -> str:
+    """What text_of() returns, for a terminal of this width."""
+    _simbench.set_page_width(page_columns())
+    return text_of().rstrip("\n")

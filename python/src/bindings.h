@@ -10,6 +10,7 @@ namespace simbench::python {
 
 void bind_algorithms(const Object& module);
 void bind_clocks(const Object& module);
+void bind_command(const Object& module);
 void bind_recordings(const Object& module);
 void bind_results(const Object& module);
 void bind_rows(const Object& module);

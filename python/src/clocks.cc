@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "app/clock_causes.h"
 #include "app/interrupt.h"
 #include "app/results.h"
+#include "cli/figure_file.h"
+#include "cli/program_runs.h"
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "python/src/binding.h"
 #include "python/src/bindings.h"
@@ -28,18 +31,20 @@ struct ClockRun {
   std::vector<std::string> notes{};
 };
 
-std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t duration_s,
-                                     std::uint64_t from_s, const Object& on_progress) {
+// `duration_s`: nothing: as the command chooses it.
+std::shared_ptr<ClockRun> run_clocks(const RunRequest& request,
+                                     std::optional<std::uint64_t> duration_s, std::uint64_t from_s,
+                                     const Object& on_progress) {
   auto run = std::make_shared<ClockRun>();
   run->provenance.command = request.command;
   run->provenance.started = std::chrono::system_clock::now();
   run->scenario = load_scenario(request);
-  evaluation::ClockOptions options{.duration_s = duration_s,
-                                   .from_s = from_s,
+  evaluation::ClockOptions options{.from_s = from_s,
                                    .first_seed = request.first_seed,
                                    .seeds = request.seeds,
                                    .jobs = request.jobs,
                                    .pipelines = request.pipelines};
+  const std::string period_note = cli::choose_duration(run->scenario, duration_s, options);
   evaluation::check_clock_options(run->scenario, options);
   options.cancel = &app::InterruptHandler::flag();
   using evaluation::ClockResults;
@@ -47,6 +52,7 @@ std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t du
     return evaluation::evaluate_clocks(
         run->scenario, [&] { return app::simulated_clocks(run->scenario); }, options, progress);
   });
+  run->results.period_note = period_note;
   run->results.causes =
       watched<evaluation::ClockCauses>(on_progress, [&](const evaluation::Progress& progress) {
         return app::causes_of(run->results, run->scenario, options, progress);
@@ -67,6 +73,11 @@ std::string series_csv(const ClockRun& run) {
   std::ostringstream text;
   reports::write_series_csv(run.results, text);
   return text.str();
+}
+
+// Draws ADEV, TDEV and MTIE over tau to a .svg or .pdf file, by gnuplot.
+void draw_clocks(const ClockRun& run, const std::string& path) {
+  cli::FigureFile(path).draw(reports::clock_figure(run.results));
 }
 
 std::string clock_html(const ClockRun& run) {
@@ -90,7 +101,8 @@ void bind_clocks(const Object& module) {
                   [](const ClockRun& run) {
                     return app::clock_text(run.results, run.scenario, "table");
                   }),
-           method("html", callable<&clock_html>), method("save", callable<&save_clocks>)}});
+           method("html", callable<&clock_html>), method("draw", callable<&draw_clocks>),
+           method("save", callable<&save_clocks>)}});
   add_functions(module, {function("run_clocks", callable<&run_clocks>)});
 }
 

@@ -40,6 +40,7 @@ Object made_module() {
   bind_recordings(module);
   bind_clocks(module);
   bind_algorithms(module);
+  bind_command(module);
   return module;
 }
 

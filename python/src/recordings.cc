@@ -12,6 +12,7 @@
 #include "app/inspection.h"
 #include "app/recorded_streams.h"
 #include "app/stream_run.h"
+#include "cli/input_options.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/frames/camera_statistics.h"
 #include "python/src/binding.h"
@@ -30,6 +31,7 @@ using evaluation::Progress;
 struct InspectedFiles {
   std::vector<reports::Inspection> inspections{};
   RecordedStreams recorded{};
+  std::vector<std::string> reading{};  // its options as words of a command line
 };
 
 struct DiagnosedFiles {
@@ -38,16 +40,27 @@ struct DiagnosedFiles {
   std::vector<std::string> notes{};
 };
 
-RecordedStreams streams_of(const std::vector<std::string>& files, const Object& on_progress) {
-  return watched<RecordedStreams>(on_progress,
-                                  [&](const Progress&) { return app::recorded_streams(files); });
+RecordedStreams streams_of(const std::vector<std::string>& files, const bags::FileOptions& options,
+                           const Object& on_progress) {
+  return watched<RecordedStreams>(on_progress, [&](const Progress& progress) {
+    return app::recorded_streams(files, options, cli::read_progress(progress));
+  });
 }
 
 std::shared_ptr<InspectedFiles> inspect_files(const std::vector<std::string>& files,
+                                              const std::vector<std::string>& topics,
+                                              const std::string& columns,
+                                              const std::vector<std::string>& device_times,
                                               const Object& on_progress) {
+  const cli::InputOptions reading{.topics = topics, .columns = columns};
+  const bags::FileOptions options = cli::file_options(reading);
   auto inspected = std::make_shared<InspectedFiles>();
-  inspected->recorded = streams_of(files, on_progress);
-  inspected->inspections = app::inspected(files, {});
+  inspected->reading = cli::reading_words(reading);
+  inspected->recorded = streams_of(files, options, on_progress);
+  inspected->inspections =
+      watched<std::vector<reports::Inspection>>(on_progress, [&](const Progress& progress) {
+        return app::inspected(files, options, device_times, cli::read_progress(progress));
+      });
   return inspected;
 }
 
@@ -98,10 +111,13 @@ std::vector<Object> streams_list(const InspectedFiles& of) {
 }
 
 std::shared_ptr<DiagnosedFiles> diagnose_files(const std::vector<std::string>& files,
+                                               const std::vector<std::string>& topics,
+                                               const std::string& columns,
                                                std::optional<double> rate_hz, bool one_host,
                                                const std::vector<std::string>& clock_logs,
                                                const Object& on_progress) {
-  RecordedStreams rig = streams_of(files, on_progress);
+  const bags::FileOptions options = cli::file_options({.topics = topics, .columns = columns});
+  RecordedStreams rig = streams_of(files, options, on_progress);
   auto diagnosed = std::make_shared<DiagnosedFiles>();
   diagnosed->files = files;
   diagnosed->notes = std::move(rig.notes);
@@ -132,7 +148,7 @@ void bind_recordings(const Object& module) {
                   [](const Inspected& of) { return reports::inspect_json(of.inspections); }),
            method("text",
                   [](const Inspected& of) {
-                    return plain(reports::inspect_document(of.inspections));
+                    return plain(reports::inspect_document(of.inspections, of.reading));
                   }),
            method("frames", callable<&stamped_frames>)}});
   using Diagnosed = DiagnosedFiles;

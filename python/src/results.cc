@@ -59,6 +59,8 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const Object& on_progre
         progress);
   });
   run->provenance->finished = std::chrono::system_clock::now();
+  app::rank_by(request.rank_by, run->archive.results);
+  run->no_levers = request.no_levers;
   run->archive.path = scenario.name;
   run->archive.scenario_json = scenario.resolved_json();
   run->notes = scenarios::warnings(scenario);
@@ -79,18 +81,28 @@ std::shared_ptr<Run> load_archive(const std::string& path) {
   return run;
 }
 
-std::shared_ptr<Run> score_recording(const std::vector<std::string>& inputs,
-                                     const std::vector<std::string>& pipelines,
-                                     const Object& on_progress) {
+std::shared_ptr<Run> score_recording(const RecordingToScore& wanted, const Object& on_progress) {
   auto run = std::make_shared<Run>();
-  run->recorded = std::make_shared<app::RecordedRun>(app::recorded_run(inputs, {}, pipelines));
+  run->provenance.emplace();
+  run->provenance->command = wanted.command;
+  run->provenance->started = std::chrono::system_clock::now();
+  const bags::FileOptions options =
+      cli::file_options({.topics = wanted.topics, .columns = wanted.columns});
+  const app::StreamScoring scoring{wanted.pipelines, wanted.stream, wanted.genlock};
+  run->recorded =
+      watched<std::shared_ptr<app::RecordedRun>>(on_progress, [&](const Progress& progress) {
+        return std::make_shared<app::RecordedRun>(
+            app::recorded_run(wanted.inputs, options, scoring, cli::read_progress(progress)));
+      });
   const app::RecordedRun& recorded = *run->recorded;
   run->scenario = recorded.scenario();
   run->notes = recorded.missing();
-  const std::vector<std::string> chosen = recorded.chosen(pipelines);
+  const std::vector<std::string> chosen = recorded.chosen(wanted.pipelines);
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
-    return recorded.evaluate(chosen, false, progress);
+    return recorded.evaluate(chosen, true, progress);
   });
+  app::rank_by(wanted.rank_by, run->archive.results);
+  run->provenance->finished = std::chrono::system_clock::now();
   run->archive.path = recorded.path();
   run->archive.scenario_json = recorded.scenario().resolved_json();
   for (const auto& more : {run->results().warnings, app::capture_notes(run->results())}) {
@@ -106,7 +118,7 @@ const reports::ResultsAnswer& known_answer(Run& run, const Object& on_progress) 
   }
   if (!run.answer) {
     run.answer = watched<reports::ResultsAnswer>(on_progress, [&](const Progress& progress) {
-      return app::run_answer(run.results(), *run.scenario, {}, progress);
+      return app::run_answer(run.results(), *run.scenario, {.levers = !run.no_levers}, progress);
     });
   }
   return *run.answer;
@@ -320,8 +332,19 @@ void bind_run(const Object& module) {
            {field<&RunRequest::scenario>("scenario"), field<&RunRequest::pipelines>("pipelines"),
             field<&RunRequest::sets>("sets"), field<&RunRequest::seeds>("seeds"),
             field<&RunRequest::first_seed>("first_seed"), field<&RunRequest::jobs>("jobs"),
-            field<&RunRequest::keep_pulses>("keep_pulses"), field<&RunRequest::command>("command")},
+            field<&RunRequest::keep_pulses>("keep_pulses"), field<&RunRequest::rank_by>("rank_by"),
+            field<&RunRequest::no_levers>("no_levers"), field<&RunRequest::command>("command")},
        .make = &default_new<RunRequest>});
+  add_class<RecordingToScore>(module, "simbench._simbench.RecordingToScore",
+                              {.properties = {field<&RecordingToScore::inputs>("inputs"),
+                                              field<&RecordingToScore::topics>("topics"),
+                                              field<&RecordingToScore::columns>("columns"),
+                                              field<&RecordingToScore::pipelines>("pipelines"),
+                                              field<&RecordingToScore::stream>("stream"),
+                                              field<&RecordingToScore::genlock>("genlock"),
+                                              field<&RecordingToScore::rank_by>("rank_by"),
+                                              field<&RecordingToScore::command>("command")},
+                               .make = &default_new<RecordingToScore>});
   add_class<Run>(
       module, "simbench._simbench.Run",
       {.properties =

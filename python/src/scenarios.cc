@@ -6,11 +6,19 @@
 #include "evaluation/scoring/metrics.h"
 #include "python/src/binding.h"
 #include "python/src/bindings.h"
+#include "python/src/run.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/loader.h"
 
 namespace simbench::python {
 namespace {
+
+std::vector<scenarios::Override> overrides_of(const Sets& sets) {
+  std::vector<scenarios::Override> overrides;
+  overrides.reserve(sets.size());
+  for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
+  return overrides;
+}
 
 std::vector<Object> list_scenarios() {
   std::vector<Object> all;
@@ -20,9 +28,10 @@ std::vector<Object> list_scenarios() {
   return all;
 }
 
-std::vector<Object> describe(const std::string& scenario) {
+std::vector<Object> describe(const std::string& scenario, const Sets& sets) {
   std::vector<Object> lines;
-  for (const auto& line : scenarios::describe(scenarios::load_scenario(scenario))) {
+  for (const auto& line :
+       scenarios::describe(scenarios::load_scenario(scenario, overrides_of(sets)))) {
     lines.push_back(dict({{"pointer", line.pointer},
                           {"value", line.value},
                           {"unit", line.unit},
@@ -41,13 +50,9 @@ Object stages() {
 
 // The pipelines of a scenario with these changes: name, and the algorithm of each stage that it
 // has.
-std::vector<Object> pipelines_of(const std::string& scenario,
-                                 const std::vector<std::pair<std::string, std::string>>& sets) {
-  std::vector<scenarios::Override> overrides;
-  overrides.reserve(sets.size());
-  for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
+std::vector<Object> pipelines_of(const std::string& scenario, const Sets& sets) {
   std::vector<Object> all;
-  for (const auto& pipeline : scenarios::load_scenario(scenario, overrides).pipelines) {
+  for (const auto& pipeline : scenarios::load_scenario(scenario, overrides_of(sets)).pipelines) {
     Object each = dict({{"name", pipeline.name}});
     for (const StageInfo& stage : kPipelineStages) {
       const std::string& algorithm = at_stage(pipeline, stage.id);

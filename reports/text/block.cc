@@ -235,6 +235,7 @@ std::string latex(const Document& raw) {
 
 std::string drawn_as(const std::string& format, const Document& document) {
   if (format == "markdown") return markdown(document);
+  if (format == "html") return html(document);
   return format == "latex" ? latex(document) : plain(document);
 }
 
@@ -274,6 +275,13 @@ std::string html(const std::vector<Block>& blocks) {
   std::string out;
   for (const Block& block : blocks) out += html(block);
   return out;
+}
+
+std::string html(const Document& document) {
+  std::string out;
+  for (const std::string& text : document.head)
+    out += fmt::format("<p>{}</p>\n", html_escaped(text));
+  return out + html(document.blocks);
 }
 
 }  // namespace simbench::reports

@@ -127,7 +127,7 @@ std::string markdown(const Document& document);
 // with the block's heading as its caption. Lines of a header are rows.
 std::string latex(const Document& document);
 
-// The document as `--format` says: "markdown", "latex", else plain.
+// The document as `--format` says: "markdown", "latex", "html", else plain.
 std::string drawn_as(const std::string& format, const Document& document);
 
 // `caption`: for screen readers.
@@ -135,5 +135,7 @@ std::string html(const Table& table, const std::string& caption);
 // A <section>. The page itself has a document's title and head.
 std::string html(const Block& block);
 std::string html(const std::vector<Block>& blocks);
+// The head as paragraphs and the blocks: a part of a page, without the title.
+std::string html(const Document& document);
 
 }  // namespace simbench::reports

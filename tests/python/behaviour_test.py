@@ -87,6 +87,57 @@ class ThreadsTest(unittest.TestCase):
         for other in data[1:]:
             self.assertTrue(other.equals(data[0]))
 
+    def test_commands_beside_each_other_are_the_same(self):
+        found = [None] * 4
+
+        def work(place):
+            if place % 2:
+                found[place] = simbench.run("3cam_1host_30fps", seeds=4).seeds.to_csv()
+            else:
+                found[place] = simbench.sweep("3cam_1host_30fps", "/cameras/exposure_ms=2,4",
+                                              ["oracle"], seeds=4).table.to_csv()
+
+        threads = [threading.Thread(target=work, args=(place,)) for place in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertIsNotNone(found[0])
+        self.assertEqual(found[2], found[0])
+        self.assertEqual(found[3], found[1])
+
+    def test_nothing_of_a_command_is_on_standard_output(self):
+        code = (
+            "import simbench\n"
+            "simbench.sweep('3cam_1host_30fps', '/cameras/exposure_ms=2,4', ['oracle'], seeds=2)\n"
+            "simbench.trace('3cam_1host_30fps', to_ms=50)\n"
+        )
+        done = command.python(code)
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_control_c_ends_a_command_and_the_next_one_runs(self):
+        code = """
+import simbench, time
+print("ready", flush=True)
+try:
+    simbench.sweep("leaderboard_lan", "/cameras/exposure_ms=2,4", seeds=1000, output="kept")
+except KeyboardInterrupt:
+    print("interrupted")
+print(len(simbench.sweep("3cam_1host_30fps", "/cameras/exposure_ms=2,4", ["oracle"], 2).table))
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE,
+                                       text=True, cwd=folder)
+            self.assertEqual(process.stdout.readline(), "ready\n")
+            log = os.path.join(folder, "kept", "runs.log")
+            while not (os.path.exists(log) and os.path.getsize(log) > 0):
+                time.sleep(0.05)
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=120)
+            self.assertEqual(output, "interrupted\n4\n")
+            self.assertEqual(process.returncode, 0)
+            self.assertGreater(os.path.getsize(log), 0)
+
     def test_control_c_ends_a_run(self):
         code = f"""
 import simbench, time
@@ -126,6 +177,55 @@ class ProgressTest(unittest.TestCase):
     def test_nobody_looks_nothing_is_shown(self):
         code = "import simbench; simbench.run('18cam_6host_45fps', seeds=400)"
         self.assertEqual(command.python(code).stderr, "")
+
+    def test_a_command_reports_its_progress_and_can_be_ended(self):
+        seen = []
+        line = ["simbench", "advise", "--require=amd<50ms", "--cameras=3", "--seeds=8"]
+        simbench._simbench.run_command(line, ["json"], None, lambda *done: seen.append(done))
+        self.assertEqual(seen[-1][0], seen[-1][1])
+        self.assertEqual(seen, sorted(seen))
+
+        def refuse(done, total):
+            raise RuntimeError("enough")
+
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(RuntimeError, "enough"):
+                simbench._simbench.run_command(
+                    ["simbench", "sweep", "--scenario=leaderboard_lan", "--seeds=500",
+                     "--sweep=/cameras/exposure_ms=2,4", f"--output={folder}/s"],
+                    [], None, refuse,
+                )  # fmt: skip
+
+    def test_a_notebook_without_widgets_has_a_bar_and_no_warning(self):
+        code = (
+            "import sys, types\n"
+            "class ZMQInteractiveShell: config = {'IPKernelApp': {}}\n"
+            "shell = ZMQInteractiveShell()\n"
+            "sys.modules['IPython'] = types.ModuleType('IPython')\n"
+            "sys.modules['IPython'].get_ipython = lambda: shell\n"
+            "sys.modules['ipywidgets'] = None\n"
+            "sys.modules['IPython.html'] = None\n"
+            "import simbench, simbench.progress\n"
+            "simbench.progress._PATIENCE_S = 0\n"
+            "simbench.run('18cam_6host_45fps', seeds=64)"
+        )
+        for flag in ("always", "error"):
+            done = command.python(code, PYTHONWARNINGS=flag)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn("Warning", done.stderr)
+            self.assertRegex(done.stderr, r"\d+/\d+")
+
+    def test_work_of_several_parts_is_drawn_without_a_warning(self):
+        code = (
+            "import simbench, simbench.progress\n"
+            "simbench.progress._PATIENCE_S = 0\n"
+            "bar = simbench.progress.Progress(True, 'run').__enter__()\n"
+            "for done, total in ((1, 9), (8, 9), (1, 4), (3, 4), (2, 2)): bar.callback(done, total)\n"
+            "bar.__exit__(None, None, None)\n"
+        )
+        done = command.python(code, PYTHONWARNINGS="error")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"\d+/4")
 
     def test_a_bar_where_wanted(self):
         code = (
@@ -178,6 +278,17 @@ class MissingPackagesTest(unittest.TestCase):
             "print(len(r.frames('oracle')) > 0)",
         )
         self.assertEqual(out, "list oracle True\nTrue\n")
+
+    def test_a_sweep_without_pandas_and_xarray(self):
+        out = self.run_without(
+            ["pandas", "xarray", "matplotlib"],
+            "s = simbench.sweep('3cam_1host_30fps', '/cameras/exposure_ms=2,4', ['oracle'], 2)\n"
+            "print(type(s.table).__name__, len(s.table), s.table[0]['/cameras/exposure_ms'])\n"
+            "for wanted in (s.to_xarray, s.plot):\n"
+            "    try: wanted()\n"
+            "    except simbench.MissingPackage as error: print(error)",
+        )
+        self.assertRegex(out, r"^list 4 2.0\nto_xarray\(\) needs xarray, .*\nplot\(\) needs matpl")
 
     def test_frames_and_plot_say_what_is_missing(self):
         out = self.run_without(

@@ -3,6 +3,7 @@
 import ast
 import inspect
 import os
+import re
 import unittest
 
 import command
@@ -42,6 +43,39 @@ class InterfaceTest(unittest.TestCase):
                         )
                 checked += 1
         self.assertGreater(checked, 40)
+
+    def test_everything_explains_itself_and_its_arguments(self):
+        checked = 0
+        for name in simbench.__all__:
+            thing = getattr(simbench, name)
+            for function in functions_of(thing):
+                text = inspect.getdoc(function) or ""
+                self.assertTrue(text, f"{name}: {function.__qualname__} explains nothing")
+                arguments = [each for each in inspect.signature(function).parameters
+                             if each != "self"]
+                if not inspect.isfunction(thing):
+                    arguments = [each for each in arguments if each not in ("path", "folder")]
+                for each in arguments:
+                    self.assertRegex(text, rf"\b{each}\b", f"{function.__qualname__}: {each}")
+                checked += 1
+        self.assertGreater(checked, 120)
+
+    def test_quantities_have_units(self):
+        """A number of Python says its unit: in its name, or in its explanation."""
+        units = r"\b(ms|s|us|ns|ppm|seconds?|percent|share|without a unit|no unit|frames a second)\b"
+        quantities = re.compile(r"(interval|tau|rate|bound|duration|until|from)_?$|_(ms|s|hz|us)$")
+        checked = 0
+        for name in simbench.__all__:
+            thing = getattr(simbench, name)
+            if inspect.isclass(thing):
+                continue
+            for each in inspect.signature(thing).parameters:
+                if not quantities.search(each):
+                    continue
+                if not re.search(r"_(ms|s|hz|us)$", each):
+                    self.assertRegex(inspect.getdoc(thing), units, f"{name}: {each}")
+                checked += 1
+        self.assertGreater(checked, 6)
 
     def test_the_stub_has_what_the_module_has(self):
         with open(STUB, encoding="utf-8") as file:

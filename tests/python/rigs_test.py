@@ -2,6 +2,8 @@
 
 import json
 import os
+import socket
+import subprocess
 import tempfile
 import unittest
 import warnings
@@ -94,6 +96,71 @@ class RigsTest(unittest.TestCase):
         with self.assertRaises(simbench.InputError) as raised:
             simbench.diagnose(missing)
         self.assertIn(str(raised.exception), said)
+
+
+class RealRigTest(unittest.TestCase):
+    """A node of this machine, whose cameras play a recording."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = folder.name
+        with open(cls.path("played.csv"), "w", encoding="utf-8") as file:
+            file.write("Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n")
+            for frame in range(1, 400):
+                due = 33.3333 * (frame - 1)
+                file.write(f"Depth,0,{frame},{due + 5:.4f},{due + 6:.4f}\n")
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        cameras = [{"serial": name, "recording": "played.csv"} for name in ("l", "m", "r")]
+        with open(cls.path("rig.json"), "w", encoding="utf-8") as file:
+            json.dump({"schema_version": 1, "name": "lab",
+                       "trigger": {"on_command": "true", "off_command": "true"},
+                       "hosts": [{"name": "host0", "address": "127.0.0.1", "port": port,
+                                  "cameras": cameras}]}, file)
+        node = subprocess.Popen(
+            [command.PROGRAM, "node", "--rig", cls.path("rig.json"), "--name", "host0",
+             "--journal", cls.path("journal")],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+        )  # fmt: skip
+        cls.addClassCleanup(node.stdout.close)
+        cls.addClassCleanup(node.wait)
+        cls.addClassCleanup(node.terminate)
+        node.stdout.readline()  # it listens
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    def options(self):
+        return {
+            "pipelines": ["raw_arrival"], "backend": "hardware", "rig": self.path("rig.json"),
+            "set": {"/timeline/frames": 60, "/timeline/warm_up_ms": 500,
+                    "/timeline/wait_before_capture_ms": 100},
+        }  # fmt: skip
+
+    def test_a_run_on_a_rig(self):
+        result = quietly(simbench.run, "3cam_1host_30fps", **self.options())
+        row = result.data["rows"][0]
+        self.assertEqual(row["pipeline"], "raw_arrival")
+        self.assertEqual(len(row["amd_ms"]["values"]), 1)
+        self.assertGreater(row["amd_ms"]["values"][0], 0)
+        self.assertEqual(result.table["ground_truth"][0], "genlock_order")
+        result.save(self.path("kept"))
+        self.assertEqual(simbench.load(self.path("kept")).data, result.data)
+
+    def test_a_recording_of_a_rig(self):
+        folder = quietly(simbench.record, "3cam_1host_30fps", self.path("recorded"),
+                         **self.options())
+        found = quietly(simbench.replay, folder)
+        self.assertEqual(list(found.table["pipeline"]), ["raw_arrival"])
+
+    def test_a_rig_that_is_not_there(self):
+        options = {**self.options(), "rig": self.path("none.json")}
+        with self.assertRaisesRegex(simbench.InputError, "none.json"):
+            simbench.run("3cam_1host_30fps", **options)
 
 
 if __name__ == "__main__":

@@ -156,6 +156,13 @@ TEST(Document, PlainFitsThePage) {
   EXPECT_THAT(text, HasSubstr("What went\n  wrong\n"));
 }
 
+TEST(Document, HtmlIsItsHeadAndItsBlocks) {
+  Document document = sample_document();
+  document.head = {"a < b"};
+  EXPECT_EQ(html(document), "<p>a &lt; b</p>\n" + html(document.blocks));
+  EXPECT_EQ(drawn_as("html", document), html(document));
+}
+
 TEST(Document, HtmlHasASectionForEachBlock) {
   const std::string text = html(sample_document().blocks);
   EXPECT_THAT(text, HasSubstr("<section>\n<h3>Numbers</h3>\n<div class=\"scroll\""));
