@@ -21,11 +21,17 @@ function(simbench_portable_program target)
   endif()
 endfunction()
 
-# simbench_old_glibc(TARGET): links a library with it, in place of the compiler's own.
+# simbench_old_glibc(TARGET [CXX]): links a library with it, in place of the compiler's own. CXX: also
+# with C++'s own library, statically, and with what that asks of a newer glibc (newer_glibc.cc).
 function(simbench_old_glibc target)
   set(libraries ${SIMBENCH_OLD_GLIBC}/lib/${CMAKE_LIBRARY_ARCHITECTURE})
   file(GLOB loader ${libraries}/ld-linux-*.so.*)
   target_link_options(${target} PRIVATE -nodefaultlibs -Wl,--as-needed)
+  if("CXX" IN_LIST ARGN)
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/newer_glibc.cc)
+    target_link_libraries(${target} PRIVATE
+      -Wl,-Bstatic -lstdc++ -lgcc_eh -lgcc -Wl,-Bdynamic)
+  endif()
   target_link_libraries(${target} PRIVATE
     ${libraries}/libc.so.6 ${libraries}/libpthread.so.0 ${libraries}/libdl.so.2
     ${libraries}/libm.so.6 ${loader}

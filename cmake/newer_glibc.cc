@@ -1,0 +1,60 @@
+// What libstdc++ and simbench ask of a newer glibc than the one that a portable library is linked
+// with (cmake/portable.cmake). The library's own, and seen by nothing else.
+//
+// Source: the GNU C Library's manual, "Finding the Object that a Code Address Belongs To";
+// sys/single_threaded.h, string.h.
+#include <dlfcn.h>
+#include <link.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace {
+
+struct Search {
+  std::uintptr_t code;
+  dl_find_object* found;
+};
+
+// Whether this object has the code, and then where its table for exceptions is.
+int look_into(dl_phdr_info* object, std::size_t /*size*/, void* data) {
+  auto& search = *static_cast<Search*>(data);
+  bool has_code = false;
+  void* table = nullptr;
+  for (int i = 0; i < object->dlpi_phnum; ++i) {
+    const ElfW(Phdr)& part = object->dlpi_phdr[i];
+    const std::uintptr_t begin = object->dlpi_addr + part.p_vaddr;
+    if (part.p_type == PT_LOAD && search.code - begin < part.p_memsz) {
+      has_code = true;
+      search.found->dlfo_map_start = reinterpret_cast<void*>(begin);
+      search.found->dlfo_map_end = reinterpret_cast<void*>(begin + part.p_memsz);
+    }
+    if (part.p_type == PT_GNU_EH_FRAME) table = reinterpret_cast<void*>(begin);
+  }
+  if (!has_code || table == nullptr) return 0;
+  search.found->dlfo_eh_frame = table;
+  return 1;
+}
+
+}  // namespace
+
+extern "C" {
+
+// glibc 2.32: whether atomic operations may be plain ones. "No" is always right.
+char __libc_single_threaded = 0;
+
+// glibc 2.35, for exceptions: 0 if found, else -1.
+int _dl_find_object(void* code, dl_find_object* found) noexcept {
+  *found = {};
+  Search search{.code = reinterpret_cast<std::uintptr_t>(code), .found = found};
+  return dl_iterate_phdr(&look_into, &search) == 1 ? 0 : -1;
+}
+
+// glibc 2.32. Its texts are those of the table that older versions had.
+extern const char* const sys_errlist[];
+extern int sys_nerr;
+const char* strerrordesc_np(int error) noexcept {
+  return error >= 0 && error < sys_nerr ? sys_errlist[error] : nullptr;
+}
+
+}  // extern "C"
