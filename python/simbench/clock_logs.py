@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import Any, Dict, List, Optional, Sequence, Union
 
-from .command import Ended, Output, Paths, joined, paths_of, run_command, words_of
-from .errors import InputError, MissingPackage
+from . import curves
+from .command import Output, Paths, joined, paths_of, run_command, words_of
 from .results import Path
 from .tables import table
-
-_DEVIATIONS = ("adev", "mdev", "hdev", "tdev_ms")
-_CURVES = (*_DEVIATIONS, "mtie_ms")
-_POINT = ("value", "low", "high", "terms", "noise", "reliable")
 
 
 class Stability(Output):
@@ -58,10 +53,8 @@ class Stability(Output):
 
     def curve(self, measure: str) -> Any:
         """The points of a curve, `measure`: adev, mdev, hdev, tdev_ms or mtie_ms. A row a point."""
-        if measure not in _CURVES:
-            raise InputError(f"measure: found {measure!r}, allowed: {', '.join(_CURVES)}")
-        return table([{"file": file["file"], **point}
-                      for file in self._files for point in file[measure]])
+        return table([{"file": file, **point}
+                      for file, points in self._points(measure).items() for point in points])
 
     @property
     def adev(self) -> Any:
@@ -96,60 +89,16 @@ class Stability(Output):
 
     def to_xarray(self) -> Any:
         """See `dataset`. Raises MissingPackage without xarray."""
-        try:
-            import numpy
-            import xarray
-        except ImportError as error:
-            raise MissingPackage(
-                "to_xarray() needs xarray, which is missing: " + str(error)
-            ) from None
-        files = [file["file"] for file in self._files]
-        taus = sorted({point["tau_s"] for file in self._files
-                       for curve in _CURVES for point in file[curve]})
-        places = {tau: place for place, tau in enumerate(taus)}
-        variables: Dict[str, Any] = {}
-        for curve in _CURVES:
-            unit = {"units": "ms"} if curve.endswith("_ms") else {}
-            for member in ("value", "low", "high") if curve in _DEVIATIONS else ("value",):
-                values = numpy.full((len(files), len(taus)), math.nan)
-                for row, file in enumerate(self._files):
-                    for point in file[curve]:
-                        if point[member] is not None:
-                            values[row, places[point["tau_s"]]] = point[member]
-                name = curve if member == "value" else f"{curve}_{member}"
-                variables[name] = (("file", "tau_s"), values, unit)
-        return xarray.Dataset(
-            variables, coords={"file": files, "tau_s": ("tau_s", taus, {"units": "s"})}
-        )
+        return curves.dataset("file", {each: self._points(each) for each in curves.CURVES}, True)
 
     def plot(self, measure: str = "adev", ax: Any = None) -> Any:
         """A curve over tau on logarithmic axes, a line a file, with its 95 % interval. `measure`:
         adev, mdev, hdev, tdev_ms or mtie_ms. Returns matplotlib's axes; `ax`: where to draw."""
-        try:
-            from matplotlib import pyplot
-        except ImportError as error:
-            raise MissingPackage(
-                "plot() needs matplotlib, which is missing: " + str(error)
-            ) from None
-        if measure not in _CURVES:
-            raise InputError(f"measure: found {measure!r}, allowed: {', '.join(_CURVES)}")
-        if ax is None:
-            _, ax = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
-        for file in self._files:
-            points = [point for point in file[measure] if point["value"] is not None]
-            taus = [point["tau_s"] for point in points]
-            (line,) = ax.plot(taus, [point["value"] for point in points], "o-", label=file["file"])
-            sure = [point for point in points if point.get("low") is not None]
-            ax.fill_between([point["tau_s"] for point in sure], [point["low"] for point in sure],
-                            [point["high"] for point in sure], color=line.get_color(), alpha=0.2,
-                            lw=0)
-        ax.set_xscale("log")
-        ax.set_yscale("log")
-        ax.set_xlabel("tau, s")
-        ax.set_ylabel(f"{measure[:-3].upper()}, ms" if measure.endswith("_ms") else measure.upper())
-        ax.grid(True, alpha=0.3)
-        ax.legend(fontsize="small")
-        return ax
+        return curves.draw(self._points(measure), measure, ax)
+
+    def _points(self, measure: str) -> Dict[str, curves.Points]:
+        curves.check_measure(measure)
+        return {file["file"]: file[measure] for file in self._files}
 
     @property
     def _files(self) -> List[Dict[str, Any]]:

@@ -6,15 +6,10 @@ import json
 import os
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
-from . import _simbench
-from .errors import InputError, MissingPackage
+from . import _simbench, curves
 from .progress import Progress
 from .results import Path, _add_programs, _warn, _whole, request_of, use_python
 from .tables import notebook_html, page_text, records, table
-
-
-#: The curves over tau.
-CURVES = ("adev", "mdev", "hdev", "tdev_ms", "mtie_ms")
 
 
 class Clocks:
@@ -59,19 +54,17 @@ class Clocks:
     def curve(self, measure: str) -> Any:
         """The points of a curve, `measure`: adev, mdev, hdev, tdev_ms or mtie_ms. A row a point:
         pipeline, tau_s, value."""
-        return table([{"pipeline": pipeline, "tau_s": tau, "value": value}
-                      for pipeline, points in self._curves(measure).items()
-                      for tau, value in points.items()])
+        return table([{"pipeline": pipeline, **point}
+                      for pipeline, points in self._points(measure).items() for point in points])
 
-    def _curves(self, measure: str) -> Dict[str, Dict[float, float]]:
-        """By pipeline and tau."""
-        if measure not in CURVES:
-            raise InputError(f"measure: found {measure!r}, allowed: {', '.join(CURVES)}")
-        curves: Dict[str, Dict[float, float]] = {}
+    def _points(self, measure: str) -> Dict[str, List[Dict[str, Any]]]:
+        curves.check_measure(measure)
+        found: Dict[str, List[Dict[str, Any]]] = {}
         for line in records(self._run.csv()):
             if line["measure"] == measure and line["tau_s"] == line["tau_s"]:
-                curves.setdefault(line["pipeline"], {})[line["tau_s"]] = line["value"]
-        return curves
+                point = {"tau_s": line["tau_s"], "value": line["value"]}
+                found.setdefault(line["pipeline"], []).append(point)
+        return found
 
     @property
     def adev(self) -> Any:
@@ -101,23 +94,7 @@ class Clocks:
     def plot(self, measure: str = "adev", ax: Any = None) -> Any:
         """A curve over tau on logarithmic axes, a line a pipeline. `measure`: adev, mdev, hdev,
         tdev_ms or mtie_ms. Returns matplotlib's axes; `ax`: where to draw."""
-        try:
-            from matplotlib import pyplot
-        except ImportError as error:
-            raise MissingPackage(
-                "plot() needs matplotlib, which is missing: " + str(error)
-            ) from None
-        if ax is None:
-            _, ax = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
-        for pipeline, points in self._curves(measure).items():
-            ax.plot(list(points), list(points.values()), "o-", label=pipeline)
-        ax.set_xscale("log")
-        ax.set_yscale("log")
-        ax.set_xlabel("tau, s")
-        ax.set_ylabel(f"{measure[:-3].upper()}, ms" if measure.endswith("_ms") else measure.upper())
-        ax.grid(True, alpha=0.3)
-        ax.legend(fontsize="small")
-        return ax
+        return curves.draw(self._points(measure), measure, ax)
 
     @property
     def dataset(self) -> Any:
@@ -127,24 +104,9 @@ class Clocks:
 
     def to_xarray(self) -> Any:
         """See `dataset`. Raises MissingPackage without xarray."""
-        try:
-            import xarray
-        except ImportError as error:
-            raise MissingPackage(
-                "to_xarray() needs xarray, which is missing: " + str(error)
-            ) from None
-        curves = {measure: self._curves(measure) for measure in CURVES}
-        pipelines = list(dict.fromkeys(name for curve in curves.values() for name in curve))
-        taus = sorted({tau for curve in curves.values() for points in curve.values()
-                       for tau in points})
-        nan = float("nan")
-        return xarray.Dataset(
-            {measure: (("pipeline", "tau_s"),
-                       [[curve.get(name, {}).get(tau, nan) for tau in taus] for name in pipelines],
-                       {"units": "ms"} if measure.endswith("_ms") else {})
-             for measure, curve in curves.items()},
-            coords={"pipeline": pipelines, "tau_s": ("tau_s", taus, {"units": "s"})},
-        )  # fmt: skip
+        return curves.dataset(
+            "pipeline", {each: self._points(each) for each in curves.CURVES}, False
+        )
 
     def save(self, folder: Path) -> None:
         """Writes the archive that `simbench clocks --output` writes."""

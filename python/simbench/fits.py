@@ -51,7 +51,7 @@ class Fit(Output):
         return str(self._fit["trust"]["text"])
 
     @property
-    def holds(self) -> Optional[bool]:
+    def holds(self) -> bool:
         """Whether the model predicts; False: something speaks against it."""
         return bool(self._fit["trust"]["holds"])
 

@@ -11,9 +11,9 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _simbench
 from .algorithms import Pipeline
-from .errors import InputError, MissingPackage, OutputError
+from .errors import InputError, OutputError
 from .progress import Progress
-from .tables import array, notebook_html, page_text, records, table
+from .tables import array, needed, notebook_html, page_text, records, table
 
 Path = Union[str, "os.PathLike[str]"]
 _MOST_SEEDS = 1_000_000
@@ -214,12 +214,7 @@ class Result:
     def plot(self, ax: Any = None) -> Any:
         """The first figure of the report: each pipeline's median, band and published value on a
         logarithmic axis. Returns matplotlib's axes; `ax`: where to draw."""
-        try:
-            from matplotlib import pyplot
-        except ImportError as error:
-            raise MissingPackage(
-                "plot() needs matplotlib, which is missing: " + str(error)
-            ) from None
+        pyplot = needed("matplotlib.pyplot", "plot()")
         rows = self._run.overview()
         if not rows:
             raise InputError(f"{self.scenario}: found no pipeline with a value above 0 to draw")

@@ -10,9 +10,9 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .algorithms import Pipeline
 from .command import Ended, answer_text, repeated, run_command, words_of
-from .errors import InputError, MissingPackage, OutputError
+from .errors import InputError, OutputError
 from .results import Path, _whole, changes_of, use_python
-from .tables import notebook_html, records, table
+from .tables import needed, notebook_html, records, table
 
 #: Values of a swept parameter: "0:1:0.1", or a sequence of numbers or words.
 Values = Union[str, Sequence[Any]]
@@ -92,13 +92,8 @@ class Sweep:
 
     def to_xarray(self) -> Any:
         """See `dataset`. Raises MissingPackage without xarray."""
-        try:
-            import numpy
-            import xarray
-        except ImportError as error:
-            raise MissingPackage(
-                "to_xarray() needs xarray, which is missing: " + str(error)
-            ) from None
+        xarray = needed("xarray", "to_xarray()")
+        numpy = needed("numpy", "to_xarray()")
         rows = self._records("sweep.csv")
         axes = self.axes
         places = [_places(axis) for axis in axes]
@@ -128,13 +123,8 @@ class Sweep:
         """The response of each pipeline: the median over the seeds and the 5 to 95 % band, along the
         first axis, with a curve for each step of the others. `metric`: one of `metrics`; None: that
         which ranks. Returns matplotlib's axes; `ax`: where to draw."""
-        try:
-            import numpy
-            from matplotlib import pyplot
-        except ImportError as error:
-            raise MissingPackage(
-                "plot() needs matplotlib, which is missing: " + str(error)
-            ) from None
+        pyplot = needed("matplotlib.pyplot", "plot()")
+        numpy = needed("numpy", "plot()")
         shown = metric or str(self._data["ranked_by"])
         if shown not in self.metrics:
             raise InputError(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import html
+import importlib
 import io
 from typing import Any, Callable, Optional
 
@@ -54,6 +55,15 @@ def table(rows: list[dict[str, Any]]) -> Any:
 
 def _is_whole(value: Any) -> bool:
     return isinstance(value, int) or value != value
+
+
+def needed(name: str, what: str) -> Any:
+    """A module that `what` needs. Raises MissingPackage."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        package = name.split(".", 1)[0]
+        raise MissingPackage(f"{what} needs {package}, which is missing: {error}") from None
 
 
 def array(rows: _simbench.Rows) -> Any:
