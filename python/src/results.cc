@@ -321,7 +321,7 @@ void bind_run(const Object& module) {
             field<&RunRequest::sets>("sets"), field<&RunRequest::seeds>("seeds"),
             field<&RunRequest::first_seed>("first_seed"), field<&RunRequest::jobs>("jobs"),
             field<&RunRequest::keep_pulses>("keep_pulses"), field<&RunRequest::command>("command")},
-       .make = &default_new<RunRequest>});
+       .make = maker("RunRequest", [] { return RunRequest{}; })});
   add_class<Run>(
       module, "simbench._simbench.Run",
       {.properties =
@@ -356,7 +356,7 @@ void bind_comparison(const Object& module) {
                                      field<&Options::by_index>("by_index"),
                                      field<&Options::different_scenarios>("different_scenarios"),
                                      field<&Options::pipelines>("pipelines")},
-                      .make = &default_new<Options>});
+                      .make = maker("ComparisonOptions", [] { return Options{}; })});
   add_class<Comparison>(
       module, "simbench._simbench.Comparison",
       {.methods = {
