@@ -2,9 +2,11 @@
 """What algorithms in Python cost: a stamp, a vectorised stamp, a pushed frame, a host_sync.
 
     PYTHONPATH=build/release/python /usr/bin/python3 bench/python_algorithms.py
+    valgrind --tool=callgrind /usr/bin/python3 bench/python_algorithms.py PIPELINE FRAMES SEEDS
 
 Each figure is a difference in CPU time of two runs on one thread that differ in one algorithm, by
-frame or run; the least of some repetitions counts. docs/benchmarks.md has measured ones.
+frame or run; the least of some repetitions counts. The second command runs one pipeline once.
+docs/benchmarks.md has measured figures.
 """
 
 import collections
@@ -145,4 +147,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) == 4:
+        seconds(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))
+    else:
+        main()

@@ -33,6 +33,11 @@ void free_object(PyObject* object) {
   Py_DECREF(type);
 }
 
+void check_no_keywords(const char* function, PyObject* keywords) {
+  if (keywords == nullptr || PyDict_Size(keywords) == 0) return;
+  throw ConversionError(std::string(function) + "(): found keywords, allowed: none");
+}
+
 void check_count(const char* function, PyObject* arguments, std::size_t count) {
   const auto found = static_cast<std::size_t>(PyTuple_Size(arguments));
   if (found == count) return;

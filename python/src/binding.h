@@ -40,8 +40,9 @@ void add_functions(const Object& module, std::vector<PyMethodDef> functions);
 PyObject* refuse_new(PyTypeObject* type, PyObject* arguments, PyObject* keywords);
 // Gives back the memory of an object, which its class has been held by.
 void free_object(PyObject* object);
-// Throws TypeError unless there are so many.
+// Throw ConversionError unless there are so many, and no keywords.
 void check_count(const char* function, PyObject* arguments, std::size_t count);
+void check_no_keywords(const char* function, PyObject* keywords);
 
 // What Python sees of a C++ object.
 template <class Value>
@@ -138,6 +139,12 @@ class Trampoline {
       return called(self, arguments, std::make_index_sequence<kCount>());
     });
   }
+  static PyObject* make(PyTypeObject* /*type*/, PyObject* arguments, PyObject* keywords) {
+    return with_errors([&] {
+      check_no_keywords(name, keywords);
+      return Object::owned(function(nullptr, arguments));
+    });
+  }
   static PyObject* property(PyObject* self, void* /*closure*/) {
     return with_errors([&] { return result(argument<At<0>>(self)); });
   }
@@ -230,12 +237,14 @@ PyGetSetDef field(const char* name) {
 struct ClassParts {
   std::vector<PyGetSetDef> properties{};
   std::vector<PyMethodDef> methods{};
-  newfunc make = &refuse_new;  // default_new<Value>: Python may make one
+  newfunc make = &refuse_new;
 };
 
-template <class Value>
-PyObject* default_new(PyTypeObject* /*type*/, PyObject* /*arguments*/, PyObject* /*keywords*/) {
-  return made_instance(std::make_shared<Value>()).release();
+// For classes whose objects Python makes: maker("Options", [] { return Options{}; }).
+template <class Call>
+newfunc maker(const char* name, Call /*call*/) {
+  Trampoline<Call>::name = name;
+  return &Trampoline<Call>::make;
 }
 
 template <class Value>

@@ -334,17 +334,18 @@ void bind_run(const Object& module) {
             field<&RunRequest::first_seed>("first_seed"), field<&RunRequest::jobs>("jobs"),
             field<&RunRequest::keep_pulses>("keep_pulses"), field<&RunRequest::rank_by>("rank_by"),
             field<&RunRequest::no_levers>("no_levers"), field<&RunRequest::command>("command")},
-       .make = &default_new<RunRequest>});
-  add_class<RecordingToScore>(module, "simbench._simbench.RecordingToScore",
-                              {.properties = {field<&RecordingToScore::inputs>("inputs"),
-                                              field<&RecordingToScore::topics>("topics"),
-                                              field<&RecordingToScore::columns>("columns"),
-                                              field<&RecordingToScore::pipelines>("pipelines"),
-                                              field<&RecordingToScore::stream>("stream"),
-                                              field<&RecordingToScore::genlock>("genlock"),
-                                              field<&RecordingToScore::rank_by>("rank_by"),
-                                              field<&RecordingToScore::command>("command")},
-                               .make = &default_new<RecordingToScore>});
+       .make = maker("RunRequest", [] { return RunRequest{}; })});
+  add_class<RecordingToScore>(
+      module, "simbench._simbench.RecordingToScore",
+      {.properties = {field<&RecordingToScore::inputs>("inputs"),
+                      field<&RecordingToScore::topics>("topics"),
+                      field<&RecordingToScore::columns>("columns"),
+                      field<&RecordingToScore::pipelines>("pipelines"),
+                      field<&RecordingToScore::stream>("stream"),
+                      field<&RecordingToScore::genlock>("genlock"),
+                      field<&RecordingToScore::rank_by>("rank_by"),
+                      field<&RecordingToScore::command>("command")},
+       .make = maker("RecordingToScore", [] { return RecordingToScore{}; })});
   add_class<Run>(
       module, "simbench._simbench.Run",
       {.properties =
@@ -379,7 +380,7 @@ void bind_comparison(const Object& module) {
                                      field<&Options::by_index>("by_index"),
                                      field<&Options::different_scenarios>("different_scenarios"),
                                      field<&Options::pipelines>("pipelines")},
-                      .make = &default_new<Options>});
+                      .make = maker("ComparisonOptions", [] { return Options{}; })});
   add_class<Comparison>(
       module, "simbench._simbench.Comparison",
       {.methods = {
