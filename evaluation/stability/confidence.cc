@@ -1,8 +1,6 @@
 #include "evaluation/stability/confidence.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/special_functions/binomial.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
