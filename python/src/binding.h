@@ -11,8 +11,7 @@
 //   add_functions(module, {function("load_archive", callable<&load_archive>)});
 //   add_class<Run>(module, "simbench._simbench.Run",
 //                  {.properties = {property("notes", [](const Run& run) { return run.notes; })},
-//                   .methods = {method("csv", [](const Run& run) { return csv(run.results());
-//                   })}});
+//                   .methods = {method("csv", callable<&csv_of>)}});
 #pragma once
 
 #include <cstddef>
@@ -38,7 +37,7 @@ PyTypeObject* add_type(const Object& module, PyType_Spec& spec);
 void add_functions(const Object& module, std::vector<PyMethodDef> functions);
 // Makes no object, for a class whose objects functions return.
 PyObject* refuse_new(PyTypeObject* type, PyObject* arguments, PyObject* keywords);
-// Gives back the memory of an object, which its class has been held by.
+// Gives back the memory of an object, and its hold of its class.
 void free_object(PyObject* object);
 // Throw ConversionError unless there are so many, and no keywords.
 void check_count(const char* function, PyObject* arguments, std::size_t count);

@@ -39,12 +39,12 @@ struct FrameRecordObject {
 // Adds both types to the module, before anything is renewed.
 void bind_records(const Object& module);
 
-// What an algorithm's method and its object are called by: a function, and the arguments that come
-// before the record. A method that is bound needs no other arguments made for each call.
+// How a method is called with a record: by its function and a tuple of arguments, the method's
+// object first and the record last. (A bound method would put them together anew for each call.)
 struct RecordFunction {
   SharedObject function;
-  Object arguments;  // a tuple, none in the record's place, which is the last
-  Py_ssize_t place = 0;
+  Object arguments;      // with None where the record comes
+  Py_ssize_t place = 0;  // of the record
 };
 RecordFunction record_function(const SharedObject& method);
 
@@ -61,11 +61,14 @@ class RecordMethod {
     place_ = made.place;
   }
 
-  // The last record if nobody else has it, else a new one.
+  // The last record if nobody else has it, else a new one. (An interpreter that keeps more in the
+  // word of the count makes it larger, never smaller: then each record is new.)
   Record& renewed() {
     if (record_ == nullptr || Py_REFCNT(record_) > 1) {
-      record_ = Object::owned(PyType_GenericAlloc(Record::type, 0)).release();
-      if (PyTuple_SetItem(arguments_.get(), place_, record_) != 0) throw PythonError::raised();
+      record_ = nullptr;
+      PyObject* const made = Object::owned(PyType_GenericAlloc(Record::type, 0)).release();
+      if (PyTuple_SetItem(arguments_.get(), place_, made) != 0) throw PythonError::raised();
+      record_ = made;
     }
     return *reinterpret_cast<Record*>(record_);
   }
