@@ -5,7 +5,8 @@
 // (SIMBENCH_PORTABLE) has a libc that may not load those of another libc: they crash it. It asks
 // the system's own `getent` instead, in a process of its own, and finds the same names.
 //
-//   const auto addresses = co_await addresses_of(executor, "pi.local", deadline);
+//   const auto addresses =
+//       co_await addresses_of(context.get_executor(), "pi.local", deadline);
 //
 // Source: getent(1), nsswitch.conf(5).
 #pragma once

@@ -411,9 +411,10 @@ TEST_F(ProgramsCommand, OlderKernelsRunWhatTheyCan) {
     return result.out + result.err;
   };
   EXPECT_THAT(said({"seccomp"}), HasSubstr("this kernel has no seccomp filters"));
-  const std::string without_landlock = said({"landlock"});
-  const std::string refusal = "this kernel has no Landlock, without which root's programs";
-  EXPECT_THAT(without_landlock, geteuid() == 0 ? HasSubstr(refusal) : Not(HasSubstr(refusal)));
+  const bool is_refused =
+      said({"landlock"}).find("this kernel has no Landlock, without which root's programs") !=
+      std::string::npos;
+  EXPECT_EQ(is_refused, geteuid() == 0);
   EXPECT_THAT(said({"close_range"}), Not(HasSubstr("this kernel")));
 }
 
