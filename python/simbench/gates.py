@@ -14,7 +14,7 @@ from .tables import table
 class Gate(Output):
     """Whether a result is as good as its baseline: true in a condition if it is."""
 
-    formats = ("text", "json", "junit")
+    formats = ("text", "json", "junit", "markdown")
 
     def __init__(self, ended: Ended) -> None:
         super().__init__(ended)
@@ -43,7 +43,7 @@ class Gate(Output):
                            if check["outcome"] == "failed"]
 
     def text(self, format: str = "text") -> str:
-        """What `simbench gate` prints; `format`: text, json or junit (JUnit XML)."""
+        """What `simbench gate` prints; `format`: text, json, junit (JUnit XML) or markdown."""
         return super().text(format)
 
 
@@ -53,6 +53,7 @@ def gate(
     *,
     mode: str = "exact",
     junit: Optional[Path] = None,
+    markdown: Optional[Path] = None,
 ) -> Gate:
     """Compares a result with a baseline. A gate that fails is no exception: `if not gate(...)`.
 
@@ -61,12 +62,12 @@ def gate(
     mode: "exact", with the seeds and the scenario of the baseline: a value of the table may not be
         worse by more than its margin; or "statistical", with 32 seeds or more of any numbers: a mean
         may not, beyond chance.
-    junit: a file to which JUnit XML is written as well.
+    junit: a file to which JUnit XML is written as well. markdown: one for a summary.
 
     Raises InputError for a result that cannot be compared with this baseline.
     """
     with archives_of("result", [result]) as paths:
-        options = words_of(baseline=baseline, mode=mode, junit=junit)
+        options = words_of(baseline=baseline, mode=mode, junit=junit, markdown=markdown)
         return Gate(run_command("gate", options, paths, formats=Gate.formats))
 
 

@@ -22,7 +22,10 @@ class GateTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, folder)
         baseline = simbench.save_baseline(run_with(1000), os.path.join(folder, "before.json"))
         self.assertTrue(simbench.gate(run_with(1000), baseline))
-        gate = simbench.gate(run_with(1_000_000), baseline)
+        summary = os.path.join(folder, "gate.md")
+        gate = simbench.gate(run_with(1_000_000), baseline, markdown=summary)
+        with open(summary, encoding="utf-8") as file:
+            self.assertEqual(file.read().rstrip(), gate.text("markdown").rstrip())
         self.assertFalse(gate)
         failed = gate.table[gate.table["outcome"] == "failed"]
         self.assertIn("amd_ms", list(failed["metric"]))
