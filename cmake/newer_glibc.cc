@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 
 namespace {
 
@@ -55,6 +56,21 @@ extern const char* const sys_errlist[];
 extern int sys_nerr;
 const char* strerrordesc_np(int error) noexcept {
   return error >= 0 && error < sys_nerr ? sys_errlist[error] : nullptr;
+}
+
+// Debian's libbz2.a is no position-independent code: it reads these where they are, which may not
+// be in another library. The linker puts ours in their place (--wrap).
+extern FILE* __real_stdin;
+extern FILE* __real_stdout;
+extern FILE* __real_stderr;
+FILE* __wrap_stdin = nullptr;
+FILE* __wrap_stdout = nullptr;
+FILE* __wrap_stderr = nullptr;
+
+__attribute__((constructor(101))) static void take_streams() {
+  __wrap_stdin = __real_stdin;
+  __wrap_stdout = __real_stdout;
+  __wrap_stderr = __real_stderr;
 }
 
 }  // extern "C"

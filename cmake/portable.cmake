@@ -29,6 +29,7 @@ function(simbench_old_glibc target)
   target_link_options(${target} PRIVATE -nodefaultlibs -Wl,--as-needed)
   if("CXX" IN_LIST ARGN)
     target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/newer_glibc.cc)
+    target_link_options(${target} PRIVATE -Wl,--wrap=stdin -Wl,--wrap=stdout -Wl,--wrap=stderr)
     target_link_libraries(${target} PRIVATE
       -Wl,-Bstatic -lstdc++ -lgcc_eh -lgcc -Wl,-Bdynamic)
   endif()
