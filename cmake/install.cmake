@@ -8,10 +8,10 @@ set(data_dir ${CMAKE_INSTALL_DATADIR}/simbench)
 install(TARGETS simbench RUNTIME COMPONENT program)
 install(DIRECTORY scenarios/ DESTINATION ${data_dir}/scenarios COMPONENT program
         FILES_MATCHING PATTERN "*.json")
-install(DIRECTORY examples DESTINATION ${data_dir} COMPONENT program)
+install(DIRECTORY examples DESTINATION ${data_dir} COMPONENT program USE_SOURCE_PERMISSIONS)
 install(DIRECTORY reports/baselines DESTINATION ${data_dir} COMPONENT program
         FILES_MATCHING PATTERN "*.json")
-install(DIRECTORY reports/ci DESTINATION ${data_dir} COMPONENT program)
+install(DIRECTORY reports/ci DESTINATION ${data_dir} COMPONENT program USE_SOURCE_PERMISSIONS)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES tools/systemd/simbench-node.service DESTINATION lib/systemd/system COMPONENT program)
