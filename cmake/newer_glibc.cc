@@ -5,10 +5,13 @@
 // sys/single_threaded.h, string.h.
 #include <dlfcn.h>
 #include <link.h>
+#include <sys/random.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <iterator>
 
 namespace {
 
@@ -51,11 +54,28 @@ int _dl_find_object(void* code, dl_find_object* found) noexcept {
   return dl_iterate_phdr(&look_into, &search) == 1 ? 0 : -1;
 }
 
+// glibc 2.36, for std::random_device: chance of the kernel's.
+std::uint32_t arc4random() noexcept {
+  std::uint32_t value = 0;
+  if (getrandom(&value, sizeof value, 0) != sizeof value) std::abort();
+  return value;
+}
+
 // glibc 2.32. Its texts are those of the table that older versions had.
 extern const char* const sys_errlist[];
 extern int sys_nerr;
 const char* strerrordesc_np(int error) noexcept {
   return error >= 0 && error < sys_nerr ? sys_errlist[error] : nullptr;
+}
+
+// glibc 2.32. The numbers are those of x86_64 and of 64-bit Arm (signal(7)).
+const char* sigabbrev_np(int number) noexcept {
+  constexpr const char* kNames[] = {
+      nullptr, "HUP",  "INT",  "QUIT", "ILL",    "TRAP",   "ABRT",  "BUS",  "FPE",  "KILL", "USR1",
+      "SEGV",  "USR2", "PIPE", "ALRM", "TERM",   "STKFLT", "CHLD",  "CONT", "STOP", "TSTP", "TTIN",
+      "TTOU",  "URG",  "XCPU", "XFSZ", "VTALRM", "PROF",   "WINCH", "POLL", "PWR",  "SYS"};
+  return number > 0 && static_cast<std::size_t>(number) < std::size(kNames) ? kNames[number]
+                                                                            : nullptr;
 }
 
 // Debian's libbz2.a is no position-independent code: it reads these where they are, which may not

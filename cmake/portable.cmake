@@ -21,20 +21,23 @@ function(simbench_portable_program target)
   endif()
 endfunction()
 
-# simbench_old_glibc(TARGET [CXX]): links a library with it, in place of the compiler's own. CXX: also
-# with C++'s own library, statically, and with what that asks of a newer glibc (newer_glibc.cc).
+# simbench_old_glibc(TARGET [CXX]): links the libraries of the calling folder with it, in place of the
+# compiler's own; TARGET is the one there. CXX: also with C++'s own library, statically, and with what
+# that asks of a newer glibc (newer_glibc.cc).
 function(simbench_old_glibc target)
   set(libraries ${SIMBENCH_OLD_GLIBC}/lib/${CMAKE_LIBRARY_ARCHITECTURE})
   file(GLOB loader ${libraries}/ld-linux-*.so.*)
   target_link_options(${target} PRIVATE -nodefaultlibs -Wl,--as-needed)
+  set(last -lgcc)
   if("CXX" IN_LIST ARGN)
     target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/newer_glibc.cc)
     target_link_options(${target} PRIVATE -Wl,--wrap=stdin -Wl,--wrap=stdout -Wl,--wrap=stderr)
-    target_link_libraries(${target} PRIVATE
-      -Wl,-Bstatic -lstdc++ -lgcc_eh -lgcc -Wl,-Bdynamic)
+    set(last -Wl,-Bstatic -lstdc++ -lgcc_eh -lgcc -Wl,-Bdynamic)
   endif()
-  target_link_libraries(${target} PRIVATE
-    ${libraries}/libc.so.6 ${libraries}/libpthread.so.0 ${libraries}/libdl.so.2
+  list(APPEND last ${libraries}/libc.so.6 ${libraries}/libpthread.so.0 ${libraries}/libdl.so.2
     ${libraries}/libm.so.6 ${loader}
     ${SIMBENCH_OLD_GLIBC}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/libc_nonshared.a)
+  # After all that asks for them.
+  list(JOIN last " " last)
+  set(CMAKE_CXX_STANDARD_LIBRARIES ${last} PARENT_SCOPE)
 endfunction()
