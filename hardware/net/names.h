@@ -27,7 +27,7 @@ namespace simbench::hardware {
 Task<std::vector<boost::asio::ip::address>> addresses_of(boost::asio::any_io_executor executor,
                                                          std::string name, MonotonicTime deadline);
 
-// The same by getent, in any build.
+// Asks getent, in any build; else as addresses_of().
 Task<std::vector<boost::asio::ip::address>> addresses_by_getent(
     boost::asio::any_io_executor executor, std::string name, MonotonicTime deadline);
 

@@ -11,7 +11,7 @@ from .results import Path
 from .tables import table
 
 
-class Stability(Output):
+class Stability(curves.HasCurves, Output):
     """Allan, modified Allan, Hadamard and time deviation, MTIE and time error of measured clocks.
 
     adev, mdev, hdev (no unit), tdev_ms and mtie_ms are curves over tau: file, tau_s, value, the 95 %
@@ -55,31 +55,6 @@ class Stability(Output):
         """The points of a curve, `measure`: adev, mdev, hdev, tdev_ms or mtie_ms. A row a point."""
         return table([{"file": file, **point}
                       for file, points in self._points(measure).items() for point in points])
-
-    @property
-    def adev(self) -> Any:
-        """The overlapping Allan deviation, without a unit."""
-        return self.curve("adev")
-
-    @property
-    def mdev(self) -> Any:
-        """The modified Allan deviation, without a unit."""
-        return self.curve("mdev")
-
-    @property
-    def hdev(self) -> Any:
-        """The overlapping Hadamard deviation, without a unit."""
-        return self.curve("hdev")
-
-    @property
-    def tdev_ms(self) -> Any:
-        """The time deviation in ms."""
-        return self.curve("tdev_ms")
-
-    @property
-    def mtie_ms(self) -> Any:
-        """The maximum time interval error in ms, which has no interval."""
-        return self.curve("mtie_ms")
 
     @property
     def dataset(self) -> Any:

@@ -12,7 +12,7 @@ from .results import Path, _add_programs, _warn, _whole, request_of, use_python
 from .tables import notebook_html, page_text, records, table
 
 
-class Clocks:
+class Clocks(curves.HasCurves):
     """Time error, stability and holdover of the hosts' clocks: what `simbench clocks` prints.
 
     adev, mdev, hdev (no unit), tdev_ms and mtie_ms are curves over tau: pipeline, tau_s, value.
@@ -65,31 +65,6 @@ class Clocks:
                 point = {"tau_s": line["tau_s"], "value": line["value"]}
                 found.setdefault(line["pipeline"], []).append(point)
         return found
-
-    @property
-    def adev(self) -> Any:
-        """The overlapping Allan deviation, without a unit."""
-        return self.curve("adev")
-
-    @property
-    def mdev(self) -> Any:
-        """The modified Allan deviation, without a unit."""
-        return self.curve("mdev")
-
-    @property
-    def hdev(self) -> Any:
-        """The overlapping Hadamard deviation, without a unit."""
-        return self.curve("hdev")
-
-    @property
-    def tdev_ms(self) -> Any:
-        """The time deviation in ms."""
-        return self.curve("tdev_ms")
-
-    @property
-    def mtie_ms(self) -> Any:
-        """The maximum time interval error in ms."""
-        return self.curve("mtie_ms")
 
     def plot(self, measure: str = "adev", ax: Any = None) -> Any:
         """A curve over tau on logarithmic axes, a line a pipeline. `measure`: adev, mdev, hdev,

@@ -16,6 +16,39 @@ CURVES = (*DEVIATIONS, "mtie_ms")
 Points = Sequence[Mapping[str, Any]]
 
 
+class HasCurves:
+    """What has a curve for each measure: its curves by their names."""
+
+    def curve(self, measure: str) -> Any:
+        """The points of a curve, `measure`: one of CURVES."""
+        raise NotImplementedError
+
+    @property
+    def adev(self) -> Any:
+        """The overlapping Allan deviation, without a unit."""
+        return self.curve("adev")
+
+    @property
+    def mdev(self) -> Any:
+        """The modified Allan deviation, without a unit."""
+        return self.curve("mdev")
+
+    @property
+    def hdev(self) -> Any:
+        """The overlapping Hadamard deviation, without a unit."""
+        return self.curve("hdev")
+
+    @property
+    def tdev_ms(self) -> Any:
+        """The time deviation in ms."""
+        return self.curve("tdev_ms")
+
+    @property
+    def mtie_ms(self) -> Any:
+        """The maximum time interval error in ms, which has no interval."""
+        return self.curve("mtie_ms")
+
+
 def check_measure(measure: str) -> None:
     """Raises InputError."""
     if measure not in CURVES:

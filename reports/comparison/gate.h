@@ -94,7 +94,7 @@ std::string check_text(const GateReport& report, const GateCheck& check);
 const char* outcome_name(GateOutcome outcome);
 
 std::string gate_text(const GateReport& report);
-// The same for a CI's page of a change: a title with the scenario and the verdict, what failed, the
+// Markdown for a CI's page of a change: a title with the scenario and the verdict, what failed, the
 // table of what changed, notes, commands.
 std::string gate_markdown(const GateReport& report);
 // schema_version 1; members are only ever added. What does not exist is null.

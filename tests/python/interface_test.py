@@ -13,11 +13,11 @@ STUB = os.path.join(command.SOURCE, "python/simbench/_simbench.pyi")
 
 
 def functions_of(thing):
-    """A function, or the public methods of a class."""
+    """A function, or the public methods of a class, inherited ones too."""
     if inspect.isfunction(thing):
         yield thing
     elif inspect.isclass(thing) and thing.__module__.startswith("simbench."):
-        for name, member in vars(thing).items():
+        for name, member in inspect.getmembers(thing):
             function = member.fget if isinstance(member, property) else member
             if inspect.isfunction(function) and not name.startswith("_"):
                 yield function
