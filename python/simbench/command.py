@@ -159,9 +159,11 @@ class Output:
     #: The formats of text().
     formats: Sequence[str] = ("table", "markdown", "json", "html")
 
-    def __init__(self, ended: Ended) -> None:
+    def __init__(self, ended: Ended, data: Optional[Dict[str, Any]] = None) -> None:
         self._ended = ended
-        self._data: Dict[str, Any] = json.loads(ended.results["json"])
+        self._data: Dict[str, Any] = (
+            json.loads(ended.results["json"]) if data is None else data
+        )
 
     @property
     def notes(self) -> List[str]:

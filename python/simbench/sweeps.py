@@ -9,28 +9,27 @@ import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .algorithms import Pipeline
-from .command import Ended, answer_text, repeated, run_command, words_of
+from .command import Ended, Output, repeated, run_command, words_of
 from .errors import InputError, OutputError
 from .results import Path, _whole, changes_of, use_python
-from .tables import needed, notebook_html, records, table
+from .tables import needed, records, table
 
 #: Values of a swept parameter: "0:1:0.1", or a sequence of numbers or words.
 Values = Union[str, Sequence[Any]]
 
 _UNITS = ("ms", "s", "us", "ns", "hz", "ppm", "ppb")
-_FORMATS = ("table", "markdown", "html")
 _LOCK = "lock"
 _MOST_CURVES = 24
 
 
-class Sweep:
+class Sweep(Output):
     """What `simbench sweep` finds: every metric at each point, for each pipeline and seed."""
 
+    formats = ("table", "markdown", "html")
+
     def __init__(self, ended: Ended, files: Mapping[str, bytes]) -> None:
-        self._results = ended.results
-        self._notes = ended.notes
+        super().__init__(ended, json.loads(files["answer.json"]))
         self._files = dict(files)
-        self._data: Dict[str, Any] = json.loads(files["answer.json"])
         self._manifest: Dict[str, Any] = json.loads(files["manifest.json"])
 
     @property
@@ -45,25 +44,9 @@ class Sweep:
         return [dict(axis) for axis in self._manifest["axes"]]
 
     @property
-    def notes(self) -> List[str]:
-        """What the command says beside its result, a line each."""
-        return list(self._notes)
-
-    @property
     def data(self) -> Dict[str, Any]:
         """answer.json of the folder: the answer, the scenario, the metric that ranks."""
         return self._data
-
-    @property
-    def answer(self) -> str:
-        """The answer in one paragraph."""
-        return answer_text(self._data.get("answer"))
-
-    def text(self, format: str = "table") -> str:
-        """What `simbench sweep` prints: the answer and the tables. `format`: table, markdown, html."""
-        if format not in _FORMATS:
-            raise InputError(f"format: found {format!r}, allowed: {', '.join(_FORMATS)}")
-        return self._results[format]
 
     @property
     def table(self) -> Any:
@@ -185,12 +168,6 @@ class Sweep:
                 curve[places[_key(row, first)]].append(row[metric])
         return curves
 
-    def __repr__(self) -> str:
-        return self.text().rstrip("\n")
-
-    def _repr_html_(self) -> str:
-        return notebook_html(self.text("html"))
-
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
@@ -290,7 +267,7 @@ def sweep(
         raise InputError("study: found 'list', allowed: a name of listing('studies')")
     with tempfile.TemporaryDirectory(prefix="simbench_") as temporary:
         folder = os.path.join(temporary, "sweep") if output is None else os.fspath(output)
-        ended = run_command("sweep", [*options, f"--output={folder}"], formats=_FORMATS,
+        ended = run_command("sweep", [*options, f"--output={folder}"], formats=Sweep.formats,
                             progress=progress)
         files = {}
         for name in sorted(os.listdir(folder)):
