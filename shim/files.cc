@@ -30,17 +30,32 @@ namespace {
 
 bool is_written[kMostDescriptors];  // opened to be
 
+// Whether open() would make one.
+bool makes_file(int folder, const char* path, int flags) {
+  if ((flags & O_TMPFILE) == O_TMPFILE) return true;
+  return (flags & O_CREAT) != 0 && is_simulated() &&
+         kernel_call(SYS_faccessat, folder, to_word(path), F_OK) == -ENOENT;
+}
+
 int open_path(int folder, const char* path, int flags, mode_t mode) {
   if (is_chance(path)) return open_descriptor(Kind::kChance, false, (flags & O_CLOEXEC) != 0);
   if (is_device(path)) return open_device(path, flags);
   if (is_told(path)) return open_told(path, flags);
   const OwnPath own(path, (flags & O_CREAT) != 0 ? Use::kCreates : Use::kReads);
+  const bool is_new = makes_file(folder, own.text(), flags);
   const int fd = static_cast<int>(machine_call(SYS_openat, folder, own.text(), flags, mode));
   if (fd >= 0 && is_simulated()) {
+    if (is_new) note_made(fd, "", AT_EMPTY_PATH);
     note_pipe(fd);
     note_written(fd, (flags & O_ACCMODE) != O_RDONLY);
   }
   return fd;
+}
+
+// The result of a call that makes a file.
+int made(long result, int folder, const char* path) {
+  if (result == 0) note_made(folder, path);
+  return static_cast<int>(result);
 }
 
 mode_t mode_of(int flags, va_list arguments) {
@@ -163,15 +178,16 @@ SIMBENCH_CALL int rmdir(const char* path) {
 }
 SIMBENCH_CALL int mkdir(const char* path, mode_t mode) {
   const OwnPath own(path, Use::kCreates);
-  return static_cast<int>(machine_call(SYS_mkdirat, AT_FDCWD, own.text(), mode));
+  return made(machine_call(SYS_mkdirat, AT_FDCWD, own.text(), mode), AT_FDCWD, own.text());
 }
 SIMBENCH_CALL int mkdirat(int folder, const char* path, mode_t mode) {
   const OwnPath own(path, Use::kCreates);
-  return static_cast<int>(machine_call(SYS_mkdirat, folder, own.text(), mode));
+  return made(machine_call(SYS_mkdirat, folder, own.text(), mode), folder, own.text());
 }
 SIMBENCH_CALL int mkfifo(const char* path, mode_t mode) {
   const OwnPath own(path, Use::kCreates);
-  return static_cast<int>(machine_call(SYS_mknodat, AT_FDCWD, own.text(), mode | S_IFIFO, 0));
+  const long result = machine_call(SYS_mknodat, AT_FDCWD, own.text(), mode | S_IFIFO, 0);
+  return made(result, AT_FDCWD, own.text());
 }
 SIMBENCH_CALL int chmod(const char* path, mode_t mode) {
   return static_cast<int>(machine_call(SYS_fchmodat, AT_FDCWD, OwnPath(path).text(), mode));
@@ -264,7 +280,8 @@ SIMBENCH_CALL int link(const char* from, const char* to) {
 SIMBENCH_CALL int symlink(const char* to, const char* from) {
   const OwnPath own(to);
   const OwnPath there(from, Use::kCreates);
-  return static_cast<int>(machine_call(SYS_symlinkat, own.text(), AT_FDCWD, there.text()));
+  const long result = machine_call(SYS_symlinkat, own.text(), AT_FDCWD, there.text());
+  return made(result, AT_FDCWD, there.text());
 }
 
 // Names of temporary files are of the world's chance.

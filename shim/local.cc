@@ -19,6 +19,7 @@
 #include "shim/children.h"
 #include "shim/paths.h"
 #include "shim/senders.h"
+#include "shim/status.h"
 #include "shim/waiting.h"
 
 namespace simbench::shim {
@@ -35,17 +36,18 @@ Result told(Result result) {
   return result;
 }
 
+constexpr socklen_t kNameBegin = offsetof(sockaddr_un, sun_path);
+
 // A Unix-domain address whose path is the program's own.
 class OwnName {
  public:
   OwnName(const sockaddr* name, socklen_t size, Use use) : name_(name), size_(size) {
-    constexpr socklen_t kBegin = offsetof(sockaddr_un, sun_path);
-    if (name == nullptr || name->sa_family != AF_UNIX || size <= kBegin) return;
+    if (name == nullptr || name->sa_family != AF_UNIX || size <= kNameBegin) return;
     if (size > sizeof own_) return;
     memcpy(&own_, name, size);
     if (own_.sun_path[0] == '\0') return;
     char path[sizeof own_.sun_path + 1] = {};
-    memcpy(path, own_.sun_path, size - kBegin);
+    memcpy(path, own_.sun_path, size - kNameBegin);
     const OwnPath kept(path, use);
     const char* text = kept.text();
     if (text == path) return;
@@ -66,7 +68,7 @@ class OwnName {
     memset(own_.sun_path, 0, sizeof own_.sun_path);
     memcpy(own_.sun_path, text, strlen(text));
     name_ = reinterpret_cast<const sockaddr*>(&own_);
-    size_ = static_cast<socklen_t>(kBegin + strlen(text) + 1);
+    size_ = static_cast<socklen_t>(kNameBegin + strlen(text) + 1);
   }
   ~OwnName() {
     if (folder_ >= 0) machine_call(SYS_close, folder_);
@@ -158,7 +160,13 @@ int local_socket(int domain, int type, int protocol) {
 
 int local_bind(int fd, const sockaddr* name, socklen_t size) {
   const OwnName own(name, size, Use::kCreates);
-  return static_cast<int>(machine_call(SYS_bind, fd, own.name(), own.size()));
+  const long result = machine_call(SYS_bind, fd, own.name(), own.size());
+  if (result == 0 && own.size() > kNameBegin) {
+    char path[sizeof(sockaddr_un::sun_path) + 1] = {};  // empty: the name is no path
+    memcpy(path, reinterpret_cast<const char*>(own.name()) + kNameBegin, own.size() - kNameBegin);
+    if (path[0] != '\0') note_made(AT_FDCWD, path);
+  }
+  return static_cast<int>(result);
 }
 
 int local_connect(int fd, const sockaddr* name, socklen_t size) {

@@ -10,6 +10,7 @@
 
 #include "shim/link.h"
 #include "shim/proc.h"
+#include "shim/status.h"
 
 namespace simbench::shim {
 namespace {
@@ -53,13 +54,18 @@ bool is_absent(const char* path) {
   return is_own(path) ? !is_readable(path) : !is_of_process(path);
 }
 
+// If there is none.
+void make_folder(const char* path) {
+  if (machine_call(SYS_mkdirat, AT_FDCWD, path, 0755) == 0) note_made(AT_FDCWD, path);
+}
+
 // The folders that lead to it, within the host's folder.
 void make_folders(char* path) {
   const int before = errno;
   const long mask = machine_call(SYS_umask, 0);
   for (char* slash = path + strlen(folder) + 1; (slash = strchr(slash, '/')) != nullptr; ++slash) {
     *slash = '\0';
-    machine_call(SYS_mkdirat, AT_FDCWD, path, 0755);
+    make_folder(path);
     *slash = '/';
   }
   machine_call(SYS_umask, mask);
@@ -102,7 +108,7 @@ OwnPath::OwnPath(const char* path, Use use) : text_(path) {
   const bool is_whole = is_own_folder(path);
   const bool creates = is_whole || (use == Use::kCreates && is_own(path));
   if (creates) make_folders(room_);
-  if (is_whole) machine_call(SYS_mkdirat, AT_FDCWD, room_, 0755);
+  if (is_whole) make_folder(room_);
   const bool is_alone = is_folder || is_whole || is_absent(path);
   if (!is_alone && !creates && !is_there(room_)) return;
   const bool is_machines =

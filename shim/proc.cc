@@ -165,11 +165,17 @@ Tell teller_of(const char* path) {
 int make_file(int flags) {
   const int how = O_RDWR | (flags & (O_CLOEXEC | O_NONBLOCK));
   const long file = machine_call(SYS_openat, AT_FDCWD, own_folder(), how | O_TMPFILE, 0600);
-  if (file >= 0) return static_cast<int>(file);
+  if (file >= 0) {
+    note_made(static_cast<int>(file), "", AT_EMPTY_PATH);
+    return static_cast<int>(file);
+  }
   char name[PATH_MAX];
   snprintf(name, sizeof name, "%s/.told", own_folder());
   const long named = machine_call(SYS_openat, AT_FDCWD, name, how | O_CREAT | O_EXCL, 0600);
-  if (named >= 0) machine_call(SYS_unlinkat, AT_FDCWD, name, 0);
+  if (named >= 0) {
+    note_made(static_cast<int>(named), "", AT_EMPTY_PATH);
+    machine_call(SYS_unlinkat, AT_FDCWD, name, 0);
+  }
   return static_cast<int>(named);
 }
 

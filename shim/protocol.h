@@ -268,6 +268,9 @@ struct FileSight {
   std::uint64_t file = 0;
   std::int64_t born = 0;  // a number of a file that is gone may be another's
   std::int64_t modified = 0;
+  // It was just made: the machine's clock is coarse, and one that is gone may have been born then
+  // too.
+  std::int64_t is_new = 0;
 };
 
 // Which times of files are the machine's: the kernel stamps each change, and the time of the host's

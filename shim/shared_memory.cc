@@ -15,6 +15,7 @@
 
 #include "shim/link.h"
 #include "shim/paths.h"
+#include "shim/status.h"
 
 namespace simbench::shim {
 namespace {
@@ -70,6 +71,7 @@ SIMBENCH_CALL int shmget(key_t key, std::size_t size, int flags) {
   if (file < 0) return -1;
   int error = 0;
   const std::size_t there = size_of(file);
+  if (there == 0) note_made(file, "", AT_EMPTY_PATH);
   if (there == 0 && machine_call(SYS_ftruncate, file, size) < 0) error = errno;
   if (there != 0 && there < size) error = EINVAL;
   machine_call(SYS_close, file);

@@ -51,13 +51,14 @@ statx_timestamp as_stamp(std::int64_t ns) {
 }
 
 // The world knows the file from now on. Returns when it was written to.
-std::int64_t look_at(struct statx& status) {
+std::int64_t look_at(struct statx& status, bool is_new = false) {
   const std::int64_t modified = ns_of(status.stx_mtime);
   const bool is_by_machine = is_of_machine(born, modified, ns_of(status.stx_ctime));
   const FileSight sight{.device = makedev(status.stx_dev_major, status.stx_dev_minor),
                         .file = status.stx_ino,
                         .born = ns_of(status.stx_btime),
-                        .modified = is_by_machine ? modified : 0};
+                        .modified = is_by_machine ? modified : 0,
+                        .is_new = is_new ? 1 : 0};
   std::int64_t by_host = modified;
   const std::int64_t number = ask_for({.call = Call::kLookAtFile}, by_host, {&sight, sizeof sight});
   if (number >= 0) status.stx_ino = static_cast<std::uint64_t>(number);
@@ -143,6 +144,16 @@ int stat_at(int folder, const char* path, struct stat* status, int flags) {
 
 timespec host_time() {
   return to_timespec(ask({.call = Call::kReadClock, .a = CLOCK_REALTIME, .b = 1}));
+}
+
+void note_made(int folder, const char* path, int flags) {
+  if (!is_simulated()) return;
+  const int before = errno;
+  struct statx status {};
+  const bool is_there = machine_call(SYS_statx, folder, path, flags | AT_SYMLINK_NOFOLLOW,
+                                     STATX_BASIC_STATS | STATX_BTIME, &status) == 0;
+  if (is_there && is_of_host(born, ns_of(status.stx_ctime))) look_at(status, true);
+  errno = before;
 }
 
 void begin_files() {

@@ -17,5 +17,8 @@ inline constexpr dev_t kOwnDevice = 1;
 bool find_modified(int fd, timespec& modified);
 // By the host's system clock.
 timespec host_time();
+// The file was just made, by this process: it is none that the world knows. `path` is the
+// machine's; with AT_EMPTY_PATH and "", `folder` is the file.
+void note_made(int folder, const char* path, int flags = 0);
 
 }  // namespace simbench::shim

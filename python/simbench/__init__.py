@@ -17,6 +17,10 @@ from __future__ import annotations
 import os
 import sys
 
+from . import platforms
+
+platforms.load()  # before all that needs the module
+
 from . import _simbench
 from .advice import Advice, advise
 from .algorithms import (

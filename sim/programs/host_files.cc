@@ -53,10 +53,9 @@ std::int64_t HostFiles::host_now() const {
 HostFiles::Seen HostFiles::look(const shim::FileSight& sight) {
   const Key key{sight.device, sight.file, sight.born};
   auto found = files_.find(key);
-  if (found == files_.end()) {
-    if (files_.size() >= kMost) return {.number = -1, .modified = host_now()};
-    const auto number = static_cast<std::int64_t>(files_.size()) + 1;
-    found = files_.emplace(key, File{.number = number}).first;
+  if (found == files_.end() || sight.is_new != 0) {
+    if (last_number_ >= kMost) return {.number = -1, .modified = host_now()};
+    found = files_.insert_or_assign(key, File{.number = ++last_number_}).first;
   }
   File& file = found->second;
   if (sight.modified != 0 && std::exchange(file.by_machine, sight.modified) != sight.modified) {

@@ -28,7 +28,7 @@ namespace simbench::sim {
 
 class HostFiles {
  public:
-  static constexpr std::size_t kMost = 100'000;
+  static constexpr std::int64_t kMost = 100'000;
 
   struct Seen {
     std::int64_t number = -1;
@@ -60,6 +60,7 @@ class HostFiles {
   SimHost& host_;
   std::string folder_;
   std::map<Key, File> files_{};
+  std::int64_t last_number_ = 0;
 };
 
 }  // namespace simbench::sim

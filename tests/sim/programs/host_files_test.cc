@@ -52,6 +52,13 @@ TEST_F(HostFilesTest, NumbersComeInTheOrderOfTheFirstLooks) {
   EXPECT_EQ(files_.look({.device = 1, .file = 7, .born = 3}).number, 4) << "its number is reused";
 }
 
+TEST_F(HostFilesTest, AFileThatWasMadeIsNoneThatWasThere) {
+  EXPECT_EQ(files_.look({.file = 7, .born = 3}).number, 1);
+  EXPECT_EQ(files_.look({.file = 7, .born = 3, .is_new = 1}).number, 2) << "born in the same tick";
+  EXPECT_EQ(files_.look({.file = 7, .born = 3}).number, 2);
+  EXPECT_EQ(files_.look({.file = 8, .is_new = 1}).number, 3);
+}
+
 TEST_F(HostFilesTest, AFileIsFromTheFirstLookAfterItWasWrittenTo) {
   world_.run_until(10);
   const std::int64_t first = host_now();
@@ -63,8 +70,10 @@ TEST_F(HostFilesTest, AFileIsFromTheFirstLookAfterItWasWrittenTo) {
 }
 
 TEST_F(HostFilesTest, ThereIsAnEndToWhatIsKept) {
-  for (std::uint64_t file = 1; file <= HostFiles::kMost; ++file) files_.look({.file = file});
-  EXPECT_EQ(files_.look({.file = HostFiles::kMost + 1}).number, -1);
+  constexpr auto kMost = static_cast<std::uint64_t>(HostFiles::kMost);
+  for (std::uint64_t file = 1; file <= kMost; ++file) files_.look({.file = file});
+  EXPECT_EQ(files_.look({.file = kMost + 1}).number, -1);
+  EXPECT_EQ(files_.look({.file = 9, .is_new = 1}).number, -1);
   EXPECT_EQ(files_.look({.file = 9}).number, 9);
 }
 

@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
+#include <set>
+#include <sstream>
 #include <string>
 
 #include "tests/sim/programs/real_programs.h"
@@ -15,6 +17,15 @@ namespace {
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
+
+std::set<std::string> numbers_of_short_files(const std::string& said) {
+  std::set<std::string> numbers;
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("short ")) numbers.insert(line.substr(line.rfind(' ')));
+  }
+  return numbers;
+}
 
 class Leaks : public RealPrograms {
  protected:
@@ -50,6 +61,7 @@ TEST_F(Leaks, OfWhatTheMachineTellsByCalls) {
   EXPECT_THAT(said, HasSubstr("\npeer 100 0 0\n"));
   EXPECT_THAT(said, HasSubstr("\ngetrusage 0 0 0 0 0 0"));
   EXPECT_THAT(said, HasSubstr("\nhost host1 /files /files\n"));
+  EXPECT_EQ(numbers_of_short_files(said).size(), 180) << "each is a file of its own";
   // The machine's processors and its load.
   EXPECT_THAT(said, HasSubstr("\nprocessors 0 1 1 1 1 1\n"));
   EXPECT_THAT(said, HasSubstr("\ngetloadavg 3 0 0 0\n"));
