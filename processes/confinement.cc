@@ -142,10 +142,9 @@ void allow_own_process_files(int rules) {
 }  // namespace
 
 Confinement::Confinement(const Settings& settings)
-    : rules_(landlock_rules(settings)),
-      as_nobody_(settings.as_nobody),
-      filter_(call_filter(settings.served)) {
-  require_filters();
+    : as_nobody_(settings.as_nobody), filter_(call_filter(settings.served)) {
+  require_filters();  // first: without them another user cannot help
+  rules_ = landlock_rules(settings);
 }
 
 Confinement::~Confinement() {

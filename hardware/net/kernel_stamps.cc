@@ -114,7 +114,12 @@ ReceivedPiece receive_stamped(int socket, std::span<std::byte> to, sockaddr_stor
 std::optional<TransmitStamp> next_transmit_stamp(int socket) {
   for (;;) {
     alignas(cmsghdr) ControlBuffer control;
+    // The stamp comes without data; without room for some, QEMU's user mode answers 0 for ever.
+    std::byte data{};
+    iovec piece{&data, 1};
     msghdr header{};
+    header.msg_iov = &piece;
+    header.msg_iovlen = 1;
     header.msg_control = control.data();
     header.msg_controllen = control.size();
     if (recvmsg(socket, &header, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) {

@@ -415,6 +415,8 @@ TEST_F(ProgramsCommand, OlderKernelsRunWhatTheyCan) {
       said({"landlock"}).find("this kernel has no Landlock, without which root's programs") !=
       std::string::npos;
   EXPECT_EQ(is_refused, geteuid() == 0);
+  EXPECT_THAT(said({"landlock", "seccomp"}), HasSubstr("this kernel has no seccomp filters"))
+      << "without which another user could not either";
   EXPECT_THAT(said({"close_range"}), Not(HasSubstr("this kernel")));
 }
 
