@@ -83,8 +83,14 @@ void say_clocks() {
 }
 
 // Past libc: the kernel's own function for readers of clocks.
+// What the kernel has given as a number.
+template <class Pointer>
+Pointer pointer_to(std::uintptr_t number) {
+  return reinterpret_cast<Pointer>(number);  // NOLINT(performance-no-int-to-ptr)
+}
+
 void say_vdso() {
-  const auto* image = reinterpret_cast<const unsigned char*>(getauxval(AT_SYSINFO_EHDR));
+  const auto* image = pointer_to<const unsigned char*>(getauxval(AT_SYSINFO_EHDR));
   if (image == nullptr) return;
   const auto* head = reinterpret_cast<const Elf64_Ehdr*>(image);
   const auto* parts = reinterpret_cast<const Elf64_Phdr*>(image + head->e_phoff);
@@ -108,7 +114,7 @@ void say_vdso() {
     if (name == "__vdso_clock_gettime") {
       timespec now{};
       const auto* place = image + each->st_value;
-      reinterpret_cast<int (*)(clockid_t, timespec*)>(reinterpret_cast<std::uintptr_t>(place))(
+      pointer_to<int (*)(clockid_t, timespec*)>(reinterpret_cast<std::uintptr_t>(place))(
           CLOCK_REALTIME, &now);
       say("vDSO", ns(now));
     }
@@ -116,7 +122,7 @@ void say_vdso() {
       unsigned int cpu = 0;
       unsigned int node = 0;
       const auto* place = image + each->st_value;
-      reinterpret_cast<int (*)(unsigned int*, unsigned int*, void*)>(
+      pointer_to<int (*)(unsigned int*, unsigned int*, void*)>(
           reinterpret_cast<std::uintptr_t>(place))(&cpu, &node, nullptr);
       say("vDSO's processor", cpu, node);
     }
@@ -164,7 +170,7 @@ void say_chance() {
   getrandom(&number, sizeof number, 0);
   say("getrandom", number);
   say("arc4random", arc4random());
-  const auto* given = reinterpret_cast<const unsigned char*>(getauxval(AT_RANDOM));
+  const auto* given = pointer_to<const unsigned char*>(getauxval(AT_RANDOM));
   std::memcpy(&number, given, sizeof number);
   say("AT_RANDOM", number);
 }
