@@ -83,7 +83,7 @@ const std::vector<CommandGroup>& command_groups() {
        {cli::add_run_command, cli::add_sweep_command, cli::add_clocks_command,
         cli::add_reconstruct_command, cli::add_paper_command, cli::add_advise_command}},
       {"Look at results",
-       {cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
+       {cli::add_explore_command, cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
       {"Compare results", {cli::add_compare_command, cli::add_gate_command}},
       {"Recordings",
        {cli::add_inspect_command, cli::add_record_command, cli::add_replay_command,

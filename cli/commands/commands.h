@@ -26,6 +26,8 @@ void add_paper_command(CommandLine& line);
 // Which rigs of real parts meet a requirement, the cheapest first.
 void add_advise_command(CommandLine& line);
 
+// A world changed by hand in a browser.
+void add_explore_command(CommandLine& line);
 // Result archives as one HTML file.
 void add_report_command(CommandLine& line);
 // One run of one pipeline as a timeline, for the Perfetto UI or PlotJuggler.

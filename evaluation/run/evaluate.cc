@@ -35,6 +35,8 @@ double drawn_asymmetry_ms(const scenarios::Network& network) {
   return is_stated || network.port_asymmetry_sigma_ms > 0 ? 0 : network.asymmetry_sigma_ms;
 }
 
+}  // namespace
+
 // The jobs of one evaluation and their results.
 class EvaluationRun {
  public:
@@ -48,23 +50,26 @@ class EvaluationRun {
         choices_(std::move(choices)),
         groups_(options.share_captures ? capture_groups(scenario, choices_)
                                        : single_captures(choices_)),
-        order_(programs_first(groups_of_programs())),
-        parts_(progress,
-               part_plan(groups_of_programs(), options.seeds, worker_count(options.jobs))),
-        scores_(choices_.size() * options.seeds) {}
+        order_(programs_first(groups_of_programs())) {}
 
-  Results run() {
+  // Runs the seeds behind those that have run, until there are so many. Those that have run are in
+  // `known`, with their pulses, or there are none.
+  Results run_to(std::uint64_t seeds, Results known) {
+    const std::uint64_t first = known.seed_count;
+    take_back(std::move(known), seeds);
+    parts_.emplace(progress_,
+                   part_plan(groups_of_programs(), seeds - first, worker_count(options_.jobs)));
     const auto begin = std::chrono::steady_clock::now();
     const auto wall_seconds = [begin] {
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     };
     try {
       const bool finished = run_jobs_with_workers(
-          groups_.size() * options_.seeds, {.threads = options_.jobs, .cancel = options_.cancel},
-          [this]() -> Job {
-            return [this, worker = std::make_shared<TimedWorker<RecordingSource>>(
-                              cpu_time_, make_source_)](std::size_t job) {
-              run_job(job, *worker->source);
+          groups_.size() * (seeds - first), {.threads = options_.jobs, .cancel = options_.cancel},
+          [this, first]() -> Job {
+            return [this, first, worker = std::make_shared<TimedWorker<RecordingSource>>(
+                                     cpu_time_, make_source_)](std::size_t job) {
+              run_job(job, first, *worker->source);
             };
           });
       if (!finished) throw EvaluationCancelled("cancelled", results(wall_seconds()));
@@ -87,16 +92,29 @@ class EvaluationRun {
     return of_programs;
   }
 
+  // Makes room for the scores of so many seeds, the first of which are in `known`.
+  void take_back(Results known, std::uint64_t seeds) {
+    seeds_ = seeds;
+    scores_.assign(choices_.size() * seeds, std::nullopt);
+    for (std::size_t pipeline = 0; pipeline < known.rows.size(); ++pipeline) {
+      for (SeedScore& score : known.rows[pipeline].seeds) {
+        const std::uint64_t number = score.seed - options_.first_seed;
+        scores_[number * choices_.size() + pipeline] = std::move(score);
+      }
+    }
+    done_ = choices_.size() * known.seed_count;
+  }
+
   // A capture and the scores of its pipelines. Jobs of one seed are neighbours, so that the
   // remaining time follows from the elapsed time.
-  void run_job(std::size_t job, RecordingSource& source) {
+  void run_job(std::size_t job, std::uint64_t first, RecordingSource& source) {
     const std::vector<std::size_t>& group = groups_[order_[job % groups_.size()]];
-    const std::uint64_t number = job / groups_.size();
+    const std::uint64_t number = first + job / groups_.size();
     const std::uint64_t seed = options_.first_seed + number;
     SharedCapture capture(scenario_, choices_, group, seed);
-    parts_.begin(job);
-    capture.record(source, parts_.share_of(job));
-    parts_.end(job);
+    parts_->begin(job);
+    capture.record(source, parts_->share_of(job));
+    parts_->end(job);
     for (std::size_t member = 0; member < group.size(); ++member) {
       std::optional<SeedScore>& score = scores_[number * choices_.size() + group[member]];
       run_named({scenario_.name, choices_[group[member]].pipeline.name, seed}, [&] {
@@ -122,7 +140,7 @@ class EvaluationRun {
     results.derivation = scenario_.derivation;
     results.draws_load = scenario_.draws_load();
     results.first_seed = options_.first_seed;
-    results.seed_count = options_.seeds;
+    results.seed_count = seeds_;
     results.asymmetry_floor =
         asymmetry_floor(drawn_asymmetry_ms(scenario_.network), scenario_.hosts.count);
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
@@ -193,15 +211,14 @@ class EvaluationRun {
   const std::vector<PipelineChoice> choices_;
   const CaptureGroups groups_;
   const std::vector<std::size_t> order_;  // in which the groups of a seed run
-  PartProgress parts_;
+  std::optional<PartProgress> parts_;
+  std::uint64_t seeds_ = 0;  // of the rows
   // By seed, then by choice; each written by one worker.
   std::vector<std::optional<SeedScore>> scores_;
   std::mutex mutex_;  // guards what follows
   std::size_t done_ = 0;
   CpuTime cpu_time_;
 };
-
-}  // namespace
 
 Results evaluate(const Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress) {
@@ -212,7 +229,22 @@ Results evaluate(const Scenario& scenario, const SourceFactory& make_source,
 Results evaluate_choices(const Scenario& scenario, std::vector<PipelineChoice> choices,
                          const SourceFactory& make_source, const EvaluationOptions& options,
                          const Progress& progress) {
-  return EvaluationRun(scenario, std::move(choices), make_source, options, progress).run();
+  return EvaluationRun(scenario, std::move(choices), make_source, options, progress)
+      .run_to(options.seeds, {});
+}
+
+GrowingEvaluation::GrowingEvaluation(const Scenario& scenario, SourceFactory make_source,
+                                     EvaluationOptions options)
+    : make_source_(std::move(make_source)), options_(std::move(options)) {
+  options_.keep_pulses = true;
+  run_ = std::make_unique<EvaluationRun>(
+      scenario, choose_pipelines(scenario, options_.pipelines), make_source_, options_, progress_);
+}
+GrowingEvaluation::~GrowingEvaluation() = default;
+
+const Results& GrowingEvaluation::up_to(std::uint64_t seeds) {
+  if (seeds > results_.seed_count) results_ = run_->run_to(seeds, std::move(results_));
+  return results_;
 }
 
 void check_pipelines(const Scenario& scenario) { choose_pipelines(scenario, {}); }

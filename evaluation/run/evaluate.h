@@ -101,6 +101,33 @@ Results evaluate_choices(const scenarios::Scenario& scenario, std::vector<Pipeli
                          const SourceFactory& make_source, const EvaluationOptions& options,
                          const Progress& progress);
 
+// An evaluation that goes on: up_to(n) is what evaluate() with n seeds and their pulses is, but that
+// it runs the seeds alone that it has not run yet. /performance is of the last call.
+//
+// Throws what evaluate() throws; after that it is of no use.
+//
+//   GrowingEvaluation growing(scenario, make_source, {.share_captures = true});
+//   for (std::uint64_t seeds = 8; reader_stays(); seeds *= 2) show(growing.up_to(seeds));
+class GrowingEvaluation {
+ public:
+  // `scenario` outlives it. EvaluationOptions::seeds and keep_pulses do not count.
+  GrowingEvaluation(const scenarios::Scenario& scenario, SourceFactory make_source,
+                    EvaluationOptions options);
+  ~GrowingEvaluation();
+  GrowingEvaluation(const GrowingEvaluation&) = delete;
+  GrowingEvaluation& operator=(const GrowingEvaluation&) = delete;
+
+  // Fewer seeds than before are as many as before. The results are valid until the next call.
+  const Results& up_to(std::uint64_t seeds);
+
+ private:
+  SourceFactory make_source_;
+  EvaluationOptions options_;
+  Progress progress_;
+  std::unique_ptr<class EvaluationRun> run_;
+  Results results_;
+};
+
 // Checks that every pipeline of the scenario names known algorithms with allowed parameters.
 void check_pipelines(const scenarios::Scenario& scenario);
 

@@ -1,0 +1,91 @@
+// What the page shows of one state: the answer, the overview, the tables and the figures.
+
+function answerElement(answer) {
+  const root = element('div', 'answer');
+  if (!answer) {
+    root.append(element('p', '', 'No answer yet.'));
+    return root;
+  }
+  root.append(element('p', '', answer.lead));
+  const points = element('dl');
+  for (const {label, text} of answer.lines) {
+    const point = element('div');
+    point.append(element('dt', '', label), element('dd', '', text));
+    points.append(point);
+  }
+  root.append(points);
+  return root;
+}
+
+function fragmentOf(html) {
+  const template = document.createElement('template');
+  template.innerHTML = html;
+  return template.content;
+}
+
+const kFigurePlaces = ['seeds', 'run', 'budget'];
+
+class WorldView {
+  constructor(name) {
+    this.root = element('section', 'world');
+    this.root.setAttribute('aria-label', name);
+    this.head = element('h2', '', name);
+    this.world = element('p', 'provenance');
+    this.warnings = element('div');
+    this.answer = element('div');
+    this.overview = element('div');
+    this.table = element('div');
+    this.places = Object.fromEntries(kFigurePlaces.map((of) => [of, element('div', 'figures')]));
+    this.more = element('details', 'more');
+    this.more.append(element('summary', '', 'All tables'));
+    this.tables = element('div');
+    this.more.append(this.tables);
+    this.root.append(this.head, this.world, this.warnings, this.answer, this.overview,
+                     this.places.seeds, this.places.run, this.places.budget, this.table, this.more);
+    this.views = [];
+  }
+
+  showWorld(name, {world, warnings, changed}) {
+    this.head.textContent = name;
+    this.world.textContent = changed ? `${world} ${changed}` : world;
+    this.warnings.replaceChildren();
+    if (warnings.length === 0) return;
+    const list = element('ul', 'notes');
+    list.append(...warnings.map((text) => element('li', '', text)));
+    this.warnings.append(list);
+  }
+
+  showPicture(view) {
+    this.answer.replaceChildren(answerElement(view.answer));
+    this.overview.replaceChildren(fragmentOf(view.overview));
+    this.table.replaceChildren(fragmentOf(view.table));
+    this.tables.replaceChildren(fragmentOf(view.tables));
+  }
+
+  showFigures({of, notes, data}) {
+    const place = this.places[of];
+    const page = {columns: new Columns(data.columns), marked: () => null, chosen: () => {}, preferred: ''};
+    const groups = Array.from(groupedBy(data.figures, 'id').values());
+    const views = groups.map((alternatives) => new FigureView(alternatives, page));
+    // The place keeps its height, so that nothing jumps while figures are exchanged.
+    place.style.minHeight = `${place.offsetHeight}px`;
+    place.replaceChildren(...views.map(({root}) => root),
+                          ...notes.map((text) => element('p', 'legend', text)));
+    for (const view of views) view.draw();
+    place.style.minHeight = '';
+    this.views = [...this.views.filter((view) => view.root.isConnected), ...views];
+  }
+
+  // Of a state that is no more, nothing is left but what a later event replaces.
+  fade(isOld) {
+    this.root.classList.toggle('old', isOld);
+  }
+
+  redraw() {
+    for (const view of this.views) view.redraw();
+  }
+
+  resize(width) {
+    for (const view of this.views) view.resize(width);
+  }
+}

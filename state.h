@@ -1,0 +1,74 @@
+// A state of the page: a world with what was changed in it, and the pipelines that are looked at.
+//
+// A state comes from a page and is not trusted: its world is a scenario of the distribution or the
+// one that the user named when the page was started, so that a page reads no other file, and only
+// parameters of worlds can be set, so that it starts no program.
+//
+// Errors: StateRefused, with the pointer beside which the page shows the message.
+//
+//   const State state = state_of(Json::parse(body), subject);
+//   const scenarios::Scenario world = world_of(state, subject);
+//   print(command_of(state, subject, 32));   // what does the same without a page
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "reports/text/json_node.h"
+#include "scenarios/loader.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::explore {
+
+inline constexpr std::uint64_t kFirstSeeds = 8;  // of the first picture
+inline constexpr std::uint64_t kMostSeeds = 1024;
+
+// What the user named: a built-in scenario or a file, whose text is kept, so that the page shows
+// what it began with.
+struct Subject {
+  std::string name;              // as the user stated it: of a scenario, or the path of a file
+  std::optional<std::string> text{};  // of a file
+  std::vector<scenarios::Override> sets{};  // of the command line: always first
+};
+
+struct State {
+  std::string scenario;
+  std::vector<scenarios::Override> sets{};
+  std::vector<std::string> pipelines{};  // empty: all of the scenario but those of programs
+  std::uint64_t first_seed = 1;
+};
+
+// A world that cannot be, or a state that no page sends.
+class StateRefused : public std::runtime_error {
+ public:
+  StateRefused(std::string pointer, const std::string& text)
+      : std::runtime_error(text), pointer_(std::move(pointer)) {}
+  // Of the parameter that is to blame; "": of none, or of several.
+  const std::string& pointer() const { return pointer_; }
+
+ private:
+  std::string pointer_;
+};
+
+// {"scenario", "sets": [{"pointer", "value": any JSON}], "pipelines": [names], "first_seed"}; all
+// but the scenario may be left out.
+State state_of(const reports::Json& json, const Subject& subject);
+
+// The world, with the pipelines of the state alone. Refuses worlds that a page cannot play with:
+// more than kMostFrames frames or kMostHosts hosts in a run.
+inline constexpr double kMostFrames = 1e6;
+inline constexpr std::int64_t kMostHosts = 1000;
+scenarios::Scenario world_of(const State& state, const Subject& subject);
+
+// The words of a command line; `format` "" leaves that option out.
+std::vector<std::string> command_of(const State& state, const Subject& subject,
+                                    std::uint64_t seeds);
+// The same in Python.
+std::string python_of(const State& state, const Subject& subject, std::uint64_t seeds);
+// A scenario file that is this world: its base and the differences.
+std::string file_of(const State& state, const Subject& subject);
+
+}  // namespace simbench::explore
