@@ -15,8 +15,8 @@ namespace simbench::explore {
 namespace {
 
 using reports::Json;
-using server::Request;
-using server::Response;
+using server::PageRequest;
+using server::PageResponse;
 
 constexpr const char* kJson = "application/json";
 
@@ -24,7 +24,7 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Response refusal(const StateRefused& refused) {
+PageResponse refusal(const StateRefused& refused) {
   return {.status = 422,
           .type = kJson,
           .body = text_of({{"pointer", refused.pointer()}, {"message", refused.what()}})};
@@ -39,8 +39,8 @@ std::uint64_t seeds_in(const Json& body) {
 Json figures_json() {
   Json figures = Json::array();
   for (const reports::FigureEntry& entry : reports::figure_catalogue()) {
-    const bool is_of_a_run = entry.scope == reports::FigureScope::kRun ||
-                             entry.scope == reports::FigureScope::kSeed;
+    const bool is_of_a_run =
+        entry.scope == reports::FigureScope::kRun || entry.scope == reports::FigureScope::kSeed;
     if (is_of_a_run) figures.push_back({{"id", entry.id}, {"title", entry.title}});
   }
   return figures;
@@ -48,9 +48,9 @@ Json figures_json() {
 
 }  // namespace
 
-Explorer::Explorer(Subject subject) : subject_(std::move(subject)), looks_(subject_) {}
+Explorer::Explorer(PageSubject subject) : subject_(std::move(subject)), looks_(subject_) {}
 
-Response Explorer::answer(const Request& request) {
+PageResponse Explorer::answer(const PageRequest& request) {
   if (request.path.empty()) {
     return {.type = "text/html; charset=utf-8", .body = reports::explore_html()};
   }
@@ -67,7 +67,7 @@ Response Explorer::answer(const Request& request) {
   }
 }
 
-Response Explorer::subject_response() const {
+PageResponse Explorer::subject_response() const {
   Json scenarios = Json::array();
   for (const scenarios::BuiltinScenario& each : scenarios::builtin_scenarios()) {
     scenarios.push_back({{"name", each.name}, {"summary", each.summary}});
@@ -81,13 +81,13 @@ Response Explorer::subject_response() const {
                            {"version", std::string(version())}})};
 }
 
-Response Explorer::made_of(const std::string& path, const Json& body) const {
+PageResponse Explorer::made_of(const std::string& path, const Json& body) const {
   const State state = state_of(body.at("state"), subject_);
   if (path == "parameters") {
     const scenarios::Scenario world = world_of({.scenario = state.scenario}, subject_);
     return {.type = kJson,
-            .body = text_of({{"parameters", parameters_json(world)},
-                             {"choices", pipelines_json(world)}})};
+            .body = text_of(
+                {{"parameters", parameters_json(world)}, {"choices", pipelines_json(world)}})};
   }
   if (path == "scenario.json") {
     return {.type = kJson, .body = file_of(state, subject_), .file_name = "explored.json"};
@@ -103,14 +103,15 @@ Response Explorer::made_of(const std::string& path, const Json& body) const {
   return {.status = 404, .body = "there is no such page\n"};
 }
 
-Response Explorer::look(const Json& body) {
+PageResponse Explorer::look(const Json& body) {
   LookRequest request = request_of(body, subject_);
   const bool is_text = !request.format.empty();
   if (is_text) world_of(request.states.front(), subject_);  // refuses before the answer's head
-  return {.type = is_text ? "text/plain; charset=utf-8" : "application/x-ndjson",
-          .stream = [this, request = std::move(request)](std::shared_ptr<server::Stream> stream) {
-            looks_.add(request, std::move(stream));
-          }};
+  return {
+      .type = is_text ? "text/plain; charset=utf-8" : "application/x-ndjson",
+      .stream = [this, request = std::move(request)](std::shared_ptr<server::PageStream> stream) {
+        looks_.add(request, std::move(stream));
+      }};
 }
 
 }  // namespace simbench::explore

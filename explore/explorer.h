@@ -1,7 +1,8 @@
 // The page of `simbench explore`: what each address of it answers.
 //
 //   ""            the page
-//   subject       GET: {"subject", "scenarios": [{"name", "summary"}], "figures": [{"id", "title"}],
+//   subject       GET: {"subject", "scenarios": [{"name", "summary"}], "figures": [{"id",
+//   "title"}],
 //                 "first_seeds", "most_seeds", "version"}
 //   parameters    POST {"state"}: {"parameters": parameters_json(), "choices": pipelines_json()} of
 //                 its scenario, without its changes
@@ -25,16 +26,16 @@ namespace simbench::explore {
 
 class Explorer {
  public:
-  explicit Explorer(Subject subject);
+  explicit Explorer(PageSubject subject);
 
-  server::Response answer(const server::Request& request);
+  server::PageResponse answer(const server::PageRequest& request);
 
  private:
-  server::Response subject_response() const;
-  server::Response made_of(const std::string& path, const reports::Json& body) const;
-  server::Response look(const reports::Json& body);
+  server::PageResponse subject_response() const;
+  server::PageResponse made_of(const std::string& path, const reports::Json& body) const;
+  server::PageResponse look(const reports::Json& body);
 
-  const Subject subject_;
+  const PageSubject subject_;
   Looks looks_;
 };
 

@@ -42,8 +42,7 @@ struct Look::View {
   View(scenarios::Scenario of_world)
       : world(std::move(of_world)),
         evaluation(world, [this] { return app::simulated_world(world); },
-                   {.share_captures = true,
-                    .cancel = &app::InterruptHandler::flag()}) {}
+                   {.share_captures = true, .cancel = &app::InterruptHandler::flag()}) {}
 
   scenarios::Scenario world;
   evaluation::GrowingEvaluation evaluation;
@@ -51,7 +50,7 @@ struct Look::View {
   std::string pipeline{};  // shown in detail
 };
 
-LookRequest request_of(const Json& json, const Subject& subject) {
+LookRequest request_of(const Json& json, const PageSubject& subject) {
   if (!json.is_object() || !json.contains("states") || !json.at("states").is_array()) {
     throw StateRefused("", "the page sent no states");
   }
@@ -83,7 +82,8 @@ LookRequest request_of(const Json& json, const Subject& subject) {
   return request;
 }
 
-Look::Look(LookRequest request, const Subject& subject, std::shared_ptr<server::Stream> stream)
+Look::Look(LookRequest request, const PageSubject& subject,
+           std::shared_ptr<server::PageStream> stream)
     : request_(std::move(request)), subject_(subject), stream_(std::move(stream)) {}
 Look::~Look() = default;
 
@@ -139,8 +139,8 @@ bool Look::make_step() {
   const bool is_cut = seeds_ < request_.seeds && !request_.levers;
   send({{"event", "end"},
         {"seeds", seeds_},
-        {"why", is_cut ? "more seeds of so many pipelines would not fit into this page's memory"
-                       : ""}});
+        {"why",
+         is_cut ? "more seeds of so many pipelines would not fit into this page's memory" : ""}});
   return false;
 }
 
@@ -182,10 +182,10 @@ void Look::make_picture(std::uint64_t seeds) {
     if (view->pipeline.empty()) {
       const evaluation::Row* const best = evaluation::best_of(results);
       const bool is_there = evaluation::find_row(results.rows, request_.pipeline) != nullptr;
-      view->pipeline = is_there                ? request_.pipeline
-                       : best != nullptr       ? best->pipeline
+      view->pipeline = is_there               ? request_.pipeline
+                       : best != nullptr      ? best->pipeline
                        : results.rows.empty() ? ""
-                                               : results.rows.front().pipeline;
+                                              : results.rows.front().pipeline;
     }
     if (views_.size() > 1) {
       archives.push_back(archive_of(results, view->world, archives.empty() ? "A" : "B"));
@@ -250,8 +250,7 @@ void Look::make_text() {
   const Results& results = view.evaluation.up_to(request_.seeds);
   const reports::ResultsAnswer answer =
       app::run_answer(results, view.world, {.levers = request_.levers}, nullptr);
-  stream_->send(
-      app::results_text(results, view.world, request_.format, app::Detail::kAll, answer));
+  stream_->send(app::results_text(results, view.world, request_.format, app::Detail::kAll, answer));
 }
 
 // Pulses are what a page's memory goes for.
@@ -260,7 +259,8 @@ std::uint64_t Look::affordable_seeds() const {
   for (const std::unique_ptr<View>& view : views_) {
     for (const evaluation::Row& row : view->results->rows) {
       for (const evaluation::SeedScore& seed : row.seeds) {
-        bytes += static_cast<double>(sizeof(seed) + seed.pulses.size() * sizeof(evaluation::PulseScore)) /
+        bytes += static_cast<double>(sizeof(seed) +
+                                     seed.pulses.size() * sizeof(evaluation::PulseScore)) /
                  static_cast<double>(row.seeds.size());
       }
     }

@@ -13,8 +13,8 @@
 //   {"event": "end", "seeds": 128, "why": ""}
 //   {"event": "failed", "message"}
 //
-// A look with a format has one event in place of these: the text that `simbench run --format` prints
-// of the first state and all its seeds.
+// A look with a format has one event in place of these: the text that `simbench run --format`
+// prints of the first state and all its seeds.
 //
 // The first picture is of kFirstSeeds seeds; then come the figures of one run, the budget, and
 // pictures of twice as many seeds each. It ends by itself at the wanted number of seeds, or where
@@ -53,11 +53,11 @@ struct LookRequest {
 
 // {"states": [...], "seeds", "pipeline", "figures": [ids], "budget", "levers", "format"}; all but
 // the states may be left out. Throws StateRefused.
-LookRequest request_of(const reports::Json& json, const Subject& subject);
+LookRequest request_of(const reports::Json& json, const PageSubject& subject);
 
 class Look {
  public:
-  Look(LookRequest request, const Subject& subject, std::shared_ptr<server::Stream> stream);
+  Look(LookRequest request, const PageSubject& subject, std::shared_ptr<server::PageStream> stream);
   ~Look();
   Look(const Look&) = delete;
   Look& operator=(const Look&) = delete;
@@ -65,7 +65,7 @@ class Look {
   // Whether more remains. Never throws but for a cancelled step.
   bool step();
   std::uint64_t steps() const { return steps_; }
-  server::Stream& stream() { return *stream_; }
+  server::PageStream& stream() { return *stream_; }
 
  private:
   struct View;
@@ -81,8 +81,8 @@ class Look {
   void send(const reports::Json& event);
 
   LookRequest request_;
-  const Subject& subject_;
-  std::shared_ptr<server::Stream> stream_;
+  const PageSubject& subject_;
+  std::shared_ptr<server::PageStream> stream_;
   std::vector<std::unique_ptr<View>> views_;
   Stage stage_ = Stage::kWorlds;
   std::uint64_t seeds_ = 0;

@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kLookAgain(50);
 
 }  // namespace
 
-Looks::Looks(const Subject& subject) : subject_(subject), thread_([this] { work(); }) {}
+Looks::Looks(const PageSubject& subject) : subject_(subject), thread_([this] { work(); }) {}
 
 Looks::~Looks() {
   {
@@ -28,7 +28,7 @@ Looks::~Looks() {
   app::InterruptHandler::set(false);
 }
 
-void Looks::add(LookRequest request, std::shared_ptr<server::Stream> stream) {
+void Looks::add(LookRequest request, std::shared_ptr<server::PageStream> stream) {
   auto look = std::make_shared<Look>(std::move(request), subject_, stream);
   {
     const std::lock_guard lock(mutex_);
@@ -48,7 +48,7 @@ std::uint64_t Looks::steps() const {
   return steps_;
 }
 
-void Looks::forget(const server::Stream* stream) {
+void Looks::forget(const server::PageStream* stream) {
   const std::lock_guard lock(mutex_);
   std::erase_if(waiting_, [stream](const auto& look) { return &look->stream() == stream; });
   if (running_ == stream) app::InterruptHandler::set(true);

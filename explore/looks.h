@@ -30,26 +30,26 @@ inline constexpr std::size_t kMostLooks = 16;
 class Looks {
  public:
   // `subject` must outlive it.
-  explicit Looks(const Subject& subject);
+  explicit Looks(const PageSubject& subject);
   // Cancels what runs.
   ~Looks();
   Looks(const Looks&) = delete;
   Looks& operator=(const Looks&) = delete;
 
-  void add(LookRequest request, std::shared_ptr<server::Stream> stream);
+  void add(LookRequest request, std::shared_ptr<server::PageStream> stream);
   // How many steps were begun; for tests.
   std::uint64_t steps() const;
 
  private:
   void work();
   std::shared_ptr<Look> next();
-  void forget(const server::Stream* stream);
+  void forget(const server::PageStream* stream);
 
-  const Subject& subject_;
+  const PageSubject& subject_;
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable news_;
   std::list<std::shared_ptr<Look>> waiting_;
-  const server::Stream* running_ = nullptr;
+  const server::PageStream* running_ = nullptr;
   std::uint64_t steps_ = 0;
   bool stopping_ = false;
   std::thread thread_;  // the last: it uses all the others

@@ -97,12 +97,10 @@ Json parameters_json(const scenarios::Scenario& scenario) {
     if (!document.contains(pointer)) continue;
     const Json& value = document.at(pointer);
     if (!is_settable(line.pointer, value)) continue;
-    Json parameter = {{"pointer", line.pointer},
-                      {"value", value},
-                      {"unit", line.unit},
-                      {"meaning", line.meaning},
-                      {"source", line.source},
-                      {"group", line.pointer.substr(0, line.pointer.find('/', 1))}};
+    Json parameter = {
+        {"pointer", line.pointer}, {"value", value},
+        {"unit", line.unit},       {"meaning", line.meaning},
+        {"source", line.source},   {"group", line.pointer.substr(0, line.pointer.find('/', 1))}};
     if (const Json* const node = schema_at(line.pointer)) {
       add_schema(*node, value, parameter);
     } else {

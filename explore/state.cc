@@ -27,8 +27,8 @@ constexpr std::size_t kMostPipelines = 64;
 constexpr std::size_t kLongestName = 300;
 
 // What of a state is no value of a world.
-constexpr std::array kFixed = {"/pipelines", "/name", "/summary", "/schema_version", "/published",
-                               "/published_figures"};
+constexpr std::array kFixed = {"/pipelines",      "/name",      "/summary",
+                               "/schema_version", "/published", "/published_figures"};
 
 [[noreturn]] void refuse_form(const std::string& what) {
   throw StateRefused("", "the page sent " + what);
@@ -76,7 +76,7 @@ bool is_builtin(const std::string& name) {
 }
 
 // The changes of the command line come first: they belong to what the user named.
-std::vector<Override> all_sets(const State& state, const Subject& subject) {
+std::vector<Override> all_sets(const State& state, const PageSubject& subject) {
   std::vector<Override> sets;
   if (state.scenario == subject.name) sets = subject.sets;
   sets.insert(sets.end(), state.sets.begin(), state.sets.end());
@@ -122,9 +122,9 @@ void check_size(const Scenario& scenario) {
   }
 }
 
-Scenario loaded(const State& state, const Subject& subject) {
-  const std::vector<Override> sets = evaluation::with_ad_hoc_pipelines(
-      state.scenario, all_sets(state, subject), state.pipelines);
+Scenario loaded(const State& state, const PageSubject& subject) {
+  const std::vector<Override> sets =
+      evaluation::with_ad_hoc_pipelines(state.scenario, all_sets(state, subject), state.pipelines);
   const bool is_subject = state.scenario == subject.name;
   if (is_subject && subject.text) {
     return scenarios::load_scenario_text(*subject.text, subject.name, sets);
@@ -142,8 +142,8 @@ void keep_pipelines(const State& state, Scenario& scenario) {
   for (const evaluation::PipelineChoice& choice :
        evaluation::choose_pipelines(scenario, state.pipelines)) {
     if (choice.pipeline.programs) {
-      throw StateRefused("/pipelines", choice.pipeline.name +
-                                           " is of real programs, which a page does not start");
+      throw StateRefused(
+          "/pipelines", choice.pipeline.name + " is of real programs, which a page does not start");
     }
     chosen.push_back(choice.pipeline);
   }
@@ -171,7 +171,7 @@ std::string whole_file(const Scenario& scenario) {
 
 }  // namespace
 
-State state_of(const Json& json, const Subject& subject) {
+State state_of(const Json& json, const PageSubject& subject) {
   if (!json.is_object() || !json.contains("scenario")) refuse_form("a state without a scenario");
   State state{.scenario = name_in(json.at("scenario"), "a scenario")};
   if (state.scenario != subject.name && !is_builtin(state.scenario)) {
@@ -194,7 +194,7 @@ State state_of(const Json& json, const Subject& subject) {
   return state;
 }
 
-Scenario world_of(const State& state, const Subject& subject) {
+Scenario world_of(const State& state, const PageSubject& subject) {
   try {
     Scenario scenario = loaded(state, subject);
     check_size(scenario);
@@ -207,7 +207,7 @@ Scenario world_of(const State& state, const Subject& subject) {
   }
 }
 
-std::vector<std::string> command_of(const State& state, const Subject& subject,
+std::vector<std::string> command_of(const State& state, const PageSubject& subject,
                                     std::uint64_t seeds) {
   std::vector<std::string> words = {"simbench", "run", "--scenario", state.scenario};
   for (const Override& set : all_sets(state, subject)) {
@@ -223,11 +223,12 @@ std::vector<std::string> command_of(const State& state, const Subject& subject,
   return words;
 }
 
-std::string python_of(const State& state, const Subject& subject, std::uint64_t seeds) {
+std::string python_of(const State& state, const PageSubject& subject, std::uint64_t seeds) {
   const auto quoted = [](const std::string& text) { return Json(text).dump(); };
-  std::string text = fmt::format("import simbench\n\nresult = simbench.run(\n    {},\n",
-                                 quoted(state.scenario));
-  if (!state.pipelines.empty()) text += fmt::format("    pipelines={},\n", Json(state.pipelines).dump());
+  std::string text =
+      fmt::format("import simbench\n\nresult = simbench.run(\n    {},\n", quoted(state.scenario));
+  if (!state.pipelines.empty())
+    text += fmt::format("    pipelines={},\n", Json(state.pipelines).dump());
   text += fmt::format("    seeds={},\n", seeds);
   if (state.first_seed != 1) text += fmt::format("    first_seed={},\n", state.first_seed);
   const std::vector<Override> sets = all_sets(state, subject);
@@ -245,12 +246,13 @@ std::string python_of(const State& state, const Subject& subject, std::uint64_t 
   return text + ")\nprint(result)\n";
 }
 
-std::string file_of(const State& state, const Subject& subject) {
+std::string file_of(const State& state, const PageSubject& subject) {
   const bool is_subject = state.scenario == subject.name;
   const std::vector<Override> sets = all_sets(state, subject);
   // Members of lists are no differences that a file could state: then it has all of the world.
   const bool has_lists = std::ranges::any_of(sets, [](const Override& set) {
-    return std::ranges::any_of(std::string_view(set.pointer), [](char c) { return c >= '0' && c <= '9'; });
+    return std::ranges::any_of(std::string_view(set.pointer),
+                               [](char c) { return c >= '0' && c <= '9'; });
   });
   if (has_lists || !state.pipelines.empty() || (is_subject && subject.text)) {
     return whole_file(world_of(state, subject));

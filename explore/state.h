@@ -28,7 +28,7 @@ inline constexpr std::uint64_t kFirstSeeds = 8;  // of the first picture
 inline constexpr std::uint64_t kMostSeeds = 1024;
 
 // What the user named when the page was started.
-struct Subject {
+struct PageSubject {
   std::string name;                         // of a built-in scenario, or the path of a file
   std::optional<std::string> text{};        // of a file as it was then; nothing: built in
   std::vector<scenarios::Override> sets{};  // of the command line, which come first
@@ -46,7 +46,7 @@ class StateRefused : public std::runtime_error {
  public:
   StateRefused(std::string pointer, const std::string& text)
       : std::runtime_error(text), pointer_(std::move(pointer)) {}
-  // Of the parameter that is to blame; "": of none, or unknown.
+  // The parameter that is to blame; "": none, or unknown.
   const std::string& pointer() const { return pointer_; }
 
  private:
@@ -55,20 +55,20 @@ class StateRefused : public std::runtime_error {
 
 // {"scenario", "sets": [{"pointer", "value": any JSON}], "pipelines": [names], "first_seed"}; all
 // but the scenario may be left out.
-State state_of(const reports::Json& json, const Subject& subject);
+State state_of(const reports::Json& json, const PageSubject& subject);
 
 // A page plays with worlds up to this size: frames of all cameras in a run, and hosts.
 inline constexpr double kMostFrames = 1e6;
 inline constexpr std::int64_t kMostHosts = 1000;
 
 // The world, with the pipelines of the state alone.
-scenarios::Scenario world_of(const State& state, const Subject& subject);
+scenarios::Scenario world_of(const State& state, const PageSubject& subject);
 
 // What does the same without a page: the words of a command line, a script in Python, and a
 // scenario file of the base and the differences.
-std::vector<std::string> command_of(const State& state, const Subject& subject,
+std::vector<std::string> command_of(const State& state, const PageSubject& subject,
                                     std::uint64_t seeds);
-std::string python_of(const State& state, const Subject& subject, std::uint64_t seeds);
-std::string file_of(const State& state, const Subject& subject);
+std::string python_of(const State& state, const PageSubject& subject, std::uint64_t seeds);
+std::string file_of(const State& state, const PageSubject& subject);
 
 }  // namespace simbench::explore

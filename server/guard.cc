@@ -22,11 +22,14 @@ bool begins_with_json(std::string_view type) {
 
 }  // namespace
 
-Guard::Guard(std::uint16_t port, std::string token) : port_(port), token_(std::move(token)) {}
+PageGuard::PageGuard(std::uint16_t port, std::string token)
+    : port_(port), token_(std::move(token)) {}
 
-std::string Guard::address() const { return fmt::format("http://127.0.0.1:{}/{}/", port_, token_); }
+std::string PageGuard::address() const {
+  return fmt::format("http://127.0.0.1:{}/{}/", port_, token_);
+}
 
-bool Guard::knows_token(std::string_view target) const {
+bool PageGuard::knows_token(std::string_view target) const {
   const std::string whole = '/' + token_ + '/';
   if (target.size() < whole.size()) return false;
   unsigned differs = 0;
@@ -36,11 +39,11 @@ bool Guard::knows_token(std::string_view target) const {
   return differs == 0;
 }
 
-bool Guard::is_own_host(std::string_view host) const {
+bool PageGuard::is_own_host(std::string_view host) const {
   return host == fmt::format("127.0.0.1:{}", port_) || host == fmt::format("localhost:{}", port_);
 }
 
-Refusal Guard::judge(const RequestHead& head) const {
+PageRefusal PageGuard::judge(const RequestHead& head) const {
   if (!is_own_host(head.host)) {
     return {421, "this server is http://127.0.0.1 alone, by no other name"};
   }
@@ -63,7 +66,7 @@ Refusal Guard::judge(const RequestHead& head) const {
   return {};
 }
 
-Target Guard::below_token(std::string_view target) const {
+Target PageGuard::below_token(std::string_view target) const {
   std::string_view rest = target.substr(token_.size() + 2);
   const std::size_t mark = rest.find('?');
   if (mark == std::string_view::npos) return {std::string(rest), ""};

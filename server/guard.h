@@ -1,7 +1,7 @@
 // Which requests a local server answers: the rules of local_server.h, on the heads of requests.
 //
-//   const Guard guard(8080, "6f1c...");
-//   if (const Refusal refusal = guard.judge(head)) return answer(refusal.status, refusal.text);
+//   const PageGuard guard(8080, "6f1c...");
+//   if (const PageRefusal refusal = guard.judge(head)) return answer(refusal.status, refusal.text);
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct RequestHead {
   std::string_view content_type{};
 };
 
-struct Refusal {
+struct PageRefusal {
   unsigned status = 0;  // 0: the request is answered
   std::string text{};
   explicit operator bool() const { return status != 0; }
@@ -32,16 +32,16 @@ struct Target {
   std::string query;
 };
 
-class Guard {
+class PageGuard {
  public:
-  Guard(std::uint16_t port, std::string token);
+  PageGuard(std::uint16_t port, std::string token);
 
   // "http://127.0.0.1:40123/6f1c.../"
   std::string address() const;
   // Whether the target begins with the token. Its time does not depend on what differs.
   bool knows_token(std::string_view target) const;
-  Refusal judge(const RequestHead& head) const;
-  // Of a target that knows the token.
+  PageRefusal judge(const RequestHead& head) const;
+  // `target` knows the token.
   Target below_token(std::string_view target) const;
 
  private:

@@ -51,7 +51,7 @@ void add_rules(http::fields& head) {
 }
 
 // What is sent to one reader as it comes: fed from any thread, emptied on the server's.
-class ReaderStream final : public Stream, public std::enable_shared_from_this<ReaderStream> {
+class ReaderStream final : public PageStream, public std::enable_shared_from_this<ReaderStream> {
  public:
   ReaderStream(asio::any_io_executor executor, std::size_t most_waiting)
       : most_waiting_(most_waiting), wake_(std::move(executor)) {
@@ -292,7 +292,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
         }
         co_return;
       }
-      if (const Refusal refusal = guard_.judge(head_of(parser.get()))) {
+      if (const PageRefusal refusal = guard_.judge(head_of(parser.get()))) {
         co_await refuse(connection, refusal);
         co_return;
       }
@@ -310,7 +310,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
     }
   }
 
-  asio::awaitable<void> refuse(Connection& connection, const Refusal& refusal) {
+  asio::awaitable<void> refuse(Connection& connection, const PageRefusal& refusal) {
     ++refused_;
     http::response<http::string_body> response(http::int_to_status(refusal.status), 11);
     add_rules(response);
@@ -324,7 +324,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
     connection.stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
   }
 
-  Response handled(const http::request<http::string_body>& request) {
+  PageResponse handled(const http::request<http::string_body>& request) {
     const Target target = guard_.below_token(std::string_view(request.target()));
     try {
       return handler_({.method = std::string(std::string_view(request.method_string())),
@@ -340,7 +340,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
   asio::awaitable<bool> answer(Connection& connection,
                                const http::request<http::string_body>& request,
                                beast::flat_buffer& buffer) {
-    Response made = handled(request);
+    PageResponse made = handled(request);
     ++answered_;
     if (made.stream) {
       co_await feed(connection, made, buffer);
@@ -363,7 +363,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
   }
 
   // Sends a stream until its end or its reader's.
-  asio::awaitable<void> feed(Connection& connection, const Response& made,
+  asio::awaitable<void> feed(Connection& connection, const PageResponse& made,
                              beast::flat_buffer& buffer) {
     http::response<http::empty_body> head(http::int_to_status(made.status), 11);
     add_rules(head);
@@ -397,8 +397,8 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
     (void)buffer;
     std::array<char, 256> ignored{};
     for (;;) {
-      const auto [gone, bytes] = co_await keeps->stream.socket().async_read_some(
-          asio::buffer(ignored), kResult);
+      const auto [gone, bytes] =
+          co_await keeps->stream.socket().async_read_some(asio::buffer(ignored), kResult);
       if (gone) break;
     }
     stream->close();
@@ -431,7 +431,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
   asio::signal_set signals_;
-  const Guard guard_;
+  const PageGuard guard_;
   const std::string address_;
   Connections connections_;  // the oldest first
   std::list<std::shared_ptr<ReaderStream>> streams_;

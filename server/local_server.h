@@ -26,7 +26,7 @@
 // One thread, the one in run(): the handler is called there and must not compute for long; streams
 // may be fed from any thread. Errors: std::system_error if the port cannot be had.
 //
-//   LocalServer server({.port = 0}, [&](const Request& request) { return page(request); });
+//   LocalServer server({.port = 0}, [&](const PageRequest& request) { return page(request); });
 //   print(server.address());
 //   server.run();   // until stop(), which a signal handler's thread may call
 //
@@ -64,7 +64,7 @@ struct ServerCounts {
 
 class LocalServer {
  public:
-  using Handler = std::function<Response(const Request&)>;
+  using Handler = std::function<PageResponse(const PageRequest&)>;
 
   LocalServer(ServerOptions options, Handler handler);
   ~LocalServer();

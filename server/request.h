@@ -1,13 +1,15 @@
 // A request to a local page, what answers it, and a text that goes on while its reader stays.
 //
 // A response with a body is sent whole. One with a `stream` is sent as its maker goes on: the head
-// first, then what Stream::send() is given. A stream whose reader has gone is closed; whoever works
-// for it stops then.
+// first, then what PageStream::send() is given. A stream whose reader has gone is closed; whoever
+// works for it stops then.
 //
-//   Response looked(const Request& request) {
+//   PageResponse looked(const PageRequest& request) {
 //     if (request.method != "POST") return {.status = 405, .body = "allowed: POST\n"};
 //     return {.type = "application/x-ndjson",
-//             .stream = [](std::shared_ptr<Stream> reader) { reader->send("{}\n"); reader->end(); }};
+//             .stream = [](std::shared_ptr<PageStream> reader) { reader->send("{}\n");
+//             reader->end();
+//             }};
 //   }
 #pragma once
 
@@ -18,7 +20,7 @@
 
 namespace simbench::server {
 
-struct Request {
+struct PageRequest {
   std::string method;   // "GET", "POST"
   std::string path;     // below the page: "" is the page itself, "look" is /TOKEN/look
   std::string query{};  // behind '?', as it came
@@ -26,9 +28,9 @@ struct Request {
 };
 
 // What a response goes on with. Thread-safe.
-class Stream {
+class PageStream {
  public:
-  virtual ~Stream() = default;
+  virtual ~PageStream() = default;
   // Nothing happens once it is closed. What a slow reader leaves waiting counts: beyond the
   // server's limit the stream is closed.
   virtual void send(std::string text) = 0;
@@ -42,13 +44,13 @@ class Stream {
   virtual void when_closed(std::function<void()> action) = 0;
 };
 
-struct Response {
+struct PageResponse {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body{};
   std::string file_name{};  // a browser saves it by this name; empty: it shows it
   // Called once, on the server's thread, when the head has been sent; then there is no body.
-  std::function<void(std::shared_ptr<Stream>)> stream{};
+  std::function<void(std::shared_ptr<PageStream>)> stream{};
 };
 
 }  // namespace simbench::server

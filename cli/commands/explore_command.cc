@@ -36,8 +36,8 @@ struct ExploreOptions {
   std::uint64_t port = 0;
 };
 
-explore::Subject subject_of(const ExploreOptions& options) {
-  explore::Subject subject{.name = options.subject, .sets = overrides_of(options.sets)};
+explore::PageSubject subject_of(const ExploreOptions& options) {
+  explore::PageSubject subject{.name = options.subject, .sets = overrides_of(options.sets)};
   const scenarios::Scenario world =
       scenarios::load_scenario(options.subject, overrides_of(options.sets));
   print_warnings(scenarios::warnings(world));
@@ -52,9 +52,9 @@ int explore_by_hand(const ExploreOptions& options) {
   try {
     server::LocalServer server(
         {.port = static_cast<std::uint16_t>(options.port), .stops_on_signals = true},
-        [&](const server::Request& request) { return explorer.answer(request); });
-    print_result(fmt::format("Open {} in a browser on this machine. Ctrl-C ends it.\n",
-                             server.address()));
+        [&](const server::PageRequest& request) { return explorer.answer(request); });
+    print_result(
+        fmt::format("Open {} in a browser on this machine. Ctrl-C ends it.\n", server.address()));
     server.run();
   } catch (const std::system_error& failure) {
     throw scenarios::InputError(

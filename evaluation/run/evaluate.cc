@@ -67,10 +67,10 @@ class EvaluationRun {
       const bool finished = run_jobs_with_workers(
           groups_.size() * (seeds - first), {.threads = options_.jobs, .cancel = options_.cancel},
           [this, first]() -> Job {
-            return [this, first, worker = std::make_shared<TimedWorker<RecordingSource>>(
-                                     cpu_time_, make_source_)](std::size_t job) {
-              run_job(job, first, *worker->source);
-            };
+            return
+                [this, first,
+                 worker = std::make_shared<TimedWorker<RecordingSource>>(cpu_time_, make_source_)](
+                    std::size_t job) { run_job(job, first, *worker->source); };
           });
       if (!finished) throw EvaluationCancelled("cancelled", results(wall_seconds()));
     } catch (const RecordingCancelled&) {
@@ -237,8 +237,8 @@ GrowingEvaluation::GrowingEvaluation(const Scenario& scenario, SourceFactory mak
                                      EvaluationOptions options)
     : make_source_(std::move(make_source)), options_(std::move(options)) {
   options_.keep_pulses = true;
-  run_ = std::make_unique<EvaluationRun>(
-      scenario, choose_pipelines(scenario, options_.pipelines), make_source_, options_, progress_);
+  run_ = std::make_unique<EvaluationRun>(scenario, choose_pipelines(scenario, options_.pipelines),
+                                         make_source_, options_, progress_);
 }
 GrowingEvaluation::~GrowingEvaluation() = default;
 

@@ -101,8 +101,8 @@ Results evaluate_choices(const scenarios::Scenario& scenario, std::vector<Pipeli
                          const SourceFactory& make_source, const EvaluationOptions& options,
                          const Progress& progress);
 
-// An evaluation that goes on: up_to(n) is what evaluate() with n seeds and their pulses is, but that
-// it runs the seeds alone that it has not run yet. /performance is of the last call.
+// An evaluation that goes on: up_to(n) is what evaluate() with n seeds and their pulses is, but
+// that it runs the seeds alone that it has not run yet. /performance is of the last call.
 //
 // Throws what evaluate() throws; after that it is of no use.
 //

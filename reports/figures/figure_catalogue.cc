@@ -28,6 +28,7 @@ std::vector<FigureEntry> entries_of_a_run() {
       {"exposures", "Exposures of the cameras over time", "", {}, kRun, kPaperRig},
       {"host_clocks", "Clock errors of the hosts over time", "", {}, kRun, kPaperRig},
       {"gathering", "Gathered, dropped and wrongly gathered frames", "", {}, kRun, kPaperRig},
+      {"pulse", "One pulse, camera by camera", "", {}, kRun, kPaperRig, kMethod},
       {"stamp_intervals",
        "Intervals of the four stamps",
        "Fig. 2",

@@ -157,6 +157,13 @@ FigureSeries series(std::string label, Mark mark, int colour) {
   return made;
 }
 
+void add_span(std::string label, double from_ms, double to_ms, double panel_from_ms,
+              FigurePanel& panel) {
+  const double from = std::fmax(from_ms, panel_from_ms);
+  if (!std::isfinite(from_ms) || !(to_ms > from)) return;  // also if one of them is unknown
+  panel.spans.push_back({std::move(label), from / 1000, to_ms / 1000});
+}
+
 std::string camera_label(const RunDetail& run, std::size_t camera) {
   if (run.host_count < 2) return fmt::format("camera {}", camera);
   return fmt::format("host {}, camera {}", run.cameras[camera].host, camera);

@@ -37,6 +37,11 @@ FigureSeries series(std::string label, Mark mark, int colour);
 // than a factor of 50.
 bool is_wide(const FigurePanel& panel);
 
+// Adds a stretch of the x axis in seconds, from where the panel begins; nothing if an end is
+// unknown.
+void add_span(std::string label, double from_ms, double to_ms, double panel_from_ms,
+              FigurePanel& panel);
+
 // "host 1, camera 3"; "camera 3" where there is one host.
 std::string camera_label(const evaluation::RunDetail& run, std::size_t camera);
 // The first kept cameras of a host, at most `most`.

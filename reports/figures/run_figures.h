@@ -28,12 +28,10 @@ Figure first_seconds(const evaluation::RunDetail& run);
 // How far the true exposures of the cameras are apart, over time: each camera's against the first
 // one's, and the range of all.
 Figure exposures(const evaluation::RunDetail& run);
-// Clock errors of the hosts before, during and after synchronisation.
-Figure host_clocks(const evaluation::RunDetail& run);
 // Which frames were gathered, dropped, gathered wrongly or left over.
 Figure gathering(const evaluation::RunDetail& run);
 
-// All of these, in this order.
+// All of these, in this order, with host_clock_figure.h before the last and pulse_figure.h behind.
 std::vector<Figure> run_figures(const evaluation::RunDetail& run);
 
 }  // namespace simbench::reports

@@ -7,13 +7,23 @@ const kGroups = {
   '/algorithms': 'Algorithms', '/evaluation': 'Evaluation',
 };
 
+// What most people try first; these stand first, open.
+const kOften = [
+  '/cameras/count', '/hosts/count', '/trigger/rate_hz', '/cameras/exposure_ms',
+  '/usb/delivery_jitter_transfers', '/usb/bandwidth_mb_per_s', '/network/latency_exponential_ms',
+  '/network/asymmetry_sigma_ms', '/network/loss_probability', '/hosts/load_log_sigma',
+  '/hosts/clock/oscillator/skew_sigma_ppm', '/cameras/drop_probability',
+];
+
 function idOf(pointer) {
   return `p${pointer.replaceAll(/[^A-Za-z0-9]/g, '_')}`;
 }
 
-// "/hosts/clock/tick_ms" within its group: "clock tick_ms".
-function shortName({pointer, group}) {
-  return pointer.slice(group.length + 1).replaceAll('/', ' ') || pointer.slice(1);
+// "/hosts/clock/tick_ms" without the unit, which stands behind the value: "hosts clock tick".
+function shortName({pointer, unit}) {
+  const words = pointer.slice(1).replaceAll(/[/_]/g, ' ');
+  const last = ` ${unit.toLowerCase()}`;
+  return unit && words.endsWith(last) ? words.slice(0, -last.length) : words;
 }
 
 function valueText(value) {
@@ -173,14 +183,19 @@ class ParameterPanel {
     this.rows.clear();
     this.groups = [];
     this.root.replaceChildren();
-    const groups = Map.groupBy?.(parameters, ({group}) => group) ?? groupedBy(parameters, 'group');
-    for (const [group, members] of groups) this.addGroup(group, members);
+    const often = kOften.map((pointer) => parameters.find((each) => each.pointer === pointer)).filter(Boolean);
+    this.addGroup('Often changed', often, true);
+    const others = parameters.filter((each) => !often.includes(each));
+    for (const [group, members] of groupedBy(others, 'group')) {
+      this.addGroup(`${kGroups[group] ?? group} (${members.length})`, members, false);
+    }
     this.filter();
   }
 
-  addGroup(group, members) {
+  addGroup(heading, members, isOpen) {
     const details = element('details', 'group');
-    details.append(element('summary', '', `${kGroups[group] ?? group} (${members.length})`));
+    details.open = isOpen;
+    details.append(element('summary', '', heading));
     const rows = members.map((parameter) => {
       const row = new ParameterRow(
           parameter, (pointer, value) => this.changed(pointer, value, parameter.value));
@@ -188,7 +203,7 @@ class ParameterPanel {
       return row;
     });
     details.append(...rows.map(({root}) => root));
-    this.groups.push({details, rows, isOpen: false});
+    this.groups.push({details, rows});
     this.root.append(details);
   }
 

@@ -20,7 +20,7 @@ class States {
   constructor(scenario, changed) {
     this.now = emptyState(scenario);
     this.kept = null;
-    this.view = {pipeline: '', seeds: 128, figures: ['frame_errors', 'host_clocks'], budget: true};
+    this.view = {pipeline: '', seeds: 128, figures: ['frame_errors', 'host_clocks', 'pulse'], budget: true};
     this.past = [];
     this.future = [];
     this.changed = changed;

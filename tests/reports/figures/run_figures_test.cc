@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/figures/host_clock_figure.h"
 #include "tests/nonempty.h"
 #include "tests/reports/figures/hand_made_run.h"
 
