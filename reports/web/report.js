@@ -181,6 +181,7 @@ function resizeWithPage() {
   });
 }
 
+makeTablesSortable(document.body);
 listenToTheme();
 readFragment();
 listenToControls();

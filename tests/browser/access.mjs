@@ -85,7 +85,7 @@ export async function nothingIsCutOff(page) {
 }
 
 const kReachable = '#sections button, #controls button, #controls select, #controls input, ' +
-    '.figure-tools button, .figure-tools select, .chart, summary, .scroll[tabindex]';
+    '.figure-tools button, .figure-tools select, .table-tools button, .sort, .chart, summary, .scroll[tabindex]';
 
 // Tab goes through everything that can be used, and what has the focus has an outline.
 export async function keyboardReachesAll(page) {

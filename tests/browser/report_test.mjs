@@ -15,6 +15,7 @@ import {closeBrowser, openPage} from './browser.mjs';
 import {makeOtherPages, makeReport} from './make_report.mjs';
 import * as access from './access.mjs';
 import * as look from './look.mjs';
+import * as tables from './tables.mjs';
 import * as use from './use.mjs';
 
 const [simbench, packages] = process.argv.slice(2).map((argument) => path.resolve(argument));
@@ -82,6 +83,19 @@ async function checkAccess(file, shape) {
     await test('text stands out from what is behind it', () => access.textIsLegible(page));
     await test('the keyboard reaches everything, visibly', () => access.keyboardReachesAll(page));
     await test('every control has a name', () => look.controlsAreNamed(page));
+    await test('every table can be sorted and saved', () => tables.everyTableHasControls(page));
+  });
+}
+
+async function checkTables(file, name, column) {
+  await check('cells are put in order by value', () => tables.ordersByValue());
+  await check('cells have units and words', () => tables.knowsUnitsAndWords());
+  await check('lines of CSV are quoted', () => tables.writesCsv());
+  await withPage(file, kShapes[0], '', async (page, test) => {
+    await test('a heading sorts by its column', () => tables.sortsByClick(page, name, column));
+    await test('Enter and the space bar sort, too', () => tables.sortsByKeyboard(page, name, column));
+    await test('one column is marked as sorted', () => tables.marksOneColumn(page, name));
+    await test('a table is saved as CSV', () => tables.savesCsv(page, name));
   });
 }
 
@@ -142,6 +156,7 @@ for (const shape of kShapes) await checkLook(one, shape);
 for (const file of [one, ...Object.values(makeOtherPages(simbench, folder))]) {
   for (const shape of kAccessShapes) await checkAccess(file, shape);
 }
+await checkTables(one, "The paper's metrics", 1);
 await checkUse(one);
 await checkLink(one);
 await checkPrint(one);
