@@ -113,7 +113,7 @@ class FigureView {
     host.setAttribute('aria-label', `${panel.title || this.shown.title}: ${panel.y_label} over ${
         panel.x_label || 'categories'}. ${names}. Plus and minus zoom, arrows move, 0 resets.`);
     if (panel.title) root.append(element('h5', '', panel.title));
-    if (!panel.categories.length || !isLying(panel)) {
+    if (!isLying(panel)) {
       root.append(element('div', 'y-label', panel.y_label));
     }
     root.append(host);

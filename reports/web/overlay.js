@@ -1,20 +1,25 @@
 // Draws over and under the series of a chart: shaded spans, lines across with their labels, the marked
 // pulse.
 
-function drawSpans(chart, panel) {
+// The spans in sight, in pixels of the canvas, with the labels that fit.
+function placedSpans(chart, panel) {
   const {ctx, bbox} = chart;
-  for (const span of panel.spans) {
+  return panel.spans.map((span) => {
     const from = Math.max(bbox.left, chart.valToPos(span.from, 'x', true));
     const to = Math.min(bbox.left + bbox.width, chart.valToPos(span.to, 'x', true));
-    if (!(to > from)) continue;
+    return {from, to, label: ctx.measureText(span.label).width < to - from ? span.label : ''};
+  }).filter(({from, to}) => to > from);
+}
+
+function drawSpans(chart, panel) {
+  const {ctx, bbox} = chart;
+  for (const {from, to, label} of placedSpans(chart, panel)) {
     ctx.fillStyle = themeColour('--span');
     ctx.fillRect(from, bbox.top, to - from, bbox.height);
     ctx.fillRect(from, bbox.top, uPlot.pxRatio, bbox.height);
     ctx.fillRect(to, bbox.top, uPlot.pxRatio, bbox.height);
     ctx.fillStyle = themeColour('--muted');
-    if (ctx.measureText(span.label).width < to - from) {
-      ctx.fillText(span.label, from + 4, bbox.top + bbox.height - 6);
-    }
+    ctx.fillText(label, from + 4, bbox.top + bbox.height - 6);
   }
 }
 
@@ -28,27 +33,35 @@ function drawNotes(chart, draw) {
   ctx.restore();
 }
 
-// A line at a value of a scale, from edge to edge. Returns where it is, nothing if out of sight.
-function drawAcross(chart, scale, at, colour, dash) {
-  const {ctx, bbox} = chart;
+// Where a line at a value of a scale is, nothing if out of sight.
+function placeAcross(chart, scale, at) {
   const {min, max, ori} = chart.scales[scale];
   if (!(at >= min && at <= max)) return null;
-  const place = Math.round(chart.valToPos(at, scale, true));
+  return {place: Math.round(chart.valToPos(at, scale, true)), upright: ori === 0};
+}
+
+// From edge to edge.
+function drawAcross(chart, {place, upright}, colour, dash) {
+  const {ctx, bbox} = chart;
   ctx.strokeStyle = colour;
   ctx.lineWidth = 1.5 * uPlot.pxRatio;
   ctx.setLineDash(dash.map((length) => length * uPlot.pxRatio));
   ctx.beginPath();
-  ctx.moveTo(ori === 0 ? place : bbox.left, ori === 0 ? bbox.top : place);
-  ctx.lineTo(ori === 0 ? place : bbox.left + bbox.width, ori === 0 ? bbox.top + bbox.height : place);
+  ctx.moveTo(upright ? place : bbox.left, upright ? bbox.top : place);
+  ctx.lineTo(upright ? place : bbox.left + bbox.width, upright ? bbox.top + bbox.height : place);
   ctx.stroke();
-  return {place, upright: ori === 0};
 }
 
-// Text with the paper's colour around it, kept inside the chart.
-function drawNote(chart, text, x, y) {
+// Where a note that begins at x stands inside the chart.
+function noteLeft(chart, text, x) {
   const {ctx, bbox} = chart;
   const width = ctx.measureText(text).width;
-  const left = Math.max(bbox.left + 2, Math.min(x, bbox.left + bbox.width - width - 4));
+  return Math.max(bbox.left + 2, Math.min(x, bbox.left + bbox.width - width - 4));
+}
+
+// Text with the paper's colour around it.
+function drawNote(chart, text, left, y) {
+  const {ctx} = chart;
   ctx.setLineDash([]);
   ctx.lineWidth = 3 * uPlot.pxRatio;
   ctx.strokeStyle = themeColour('--paper');
@@ -57,30 +70,40 @@ function drawNote(chart, text, x, y) {
   ctx.fillText(text, left, y);
 }
 
-// Labels, over all lines, step down (beside upright lines) or up (on level ones) where they would
-// meet.
-function drawLines(chart, panel) {
+// The lines in sight, in pixels of the canvas. Labels step down (beside upright lines) or up (on
+// level ones) where they would meet.
+function placedLines(chart, panel) {
   const {bbox} = chart;
   const row = 14 * uPlot.pxRatio;
   const lines = [...panel.lines].sort((a, b) => a.at - b.at).map((line) => ({
-    ...line,
-    ...drawAcross(chart, line.vertical ? 'x' : 'y', line.at,
-        line.colour < 0 ? themeColour('--line') : seriesColour(line.colour), [6, 4]),
-  }));
+    label: line.label,
+    colour: line.colour < 0 ? themeColour('--line') : seriesColour(line.colour),
+    ...placeAcross(chart, line.vertical ? 'x' : 'y', line.at),
+  })).filter(({place}) => place != null);
   let upright = 0, highest = Infinity;
-  for (const line of lines.filter(({place}) => place != null)) {
+  for (const line of lines) {
     if (line.upright) {
-      drawNote(chart, line.label, line.place + 5, bbox.top + row * ++upright);
+      line.left = noteLeft(chart, line.label, line.place + 5);
+      line.bottom = bbox.top + row * ++upright;
     } else {
       highest = Math.max(bbox.top + row, Math.min(line.place - 4, highest - row));
-      drawNote(chart, line.label, bbox.left + bbox.width, highest);
+      line.left = noteLeft(chart, line.label, bbox.left + bbox.width);
+      line.bottom = highest;
     }
   }
+  return lines;
 }
 
+// The pulse that the reader has marked; nothing if there is none in sight.
+function placedPulse(chart, panel, marked) {
+  return panel.x_is_pulse && marked != null ? placeAcross(chart, 'x', marked) : null;
+}
+
+// Labels stand over all lines.
 function drawAbove(chart, panel, marked) {
-  drawLines(chart, panel);
-  if (panel.x_is_pulse && marked != null) {
-    drawAcross(chart, 'x', marked, themeColour('--accent'), []);
-  }
+  const lines = placedLines(chart, panel);
+  for (const line of lines) drawAcross(chart, line, line.colour, [6, 4]);
+  for (const {label, left, bottom} of lines) drawNote(chart, label, left, bottom);
+  const pulse = placedPulse(chart, panel, marked);
+  if (pulse) drawAcross(chart, pulse, themeColour('--accent'), []);
 }

@@ -25,7 +25,10 @@ function makeArchive(root, script) {
   const rest = root.querySelector('.figures:not(.lead)');
   const views = groupedById(figures).map((alternatives) => new FigureView(
       alternatives, {...page, preferred: leading.includes(alternatives[0].id) && lead.dataset.pipeline}));
-  for (const view of views) (leading.includes(view.id) ? lead : rest).append(view.root);
+  for (const view of views) {
+    (leading.includes(view.id) ? lead : rest).append(view.root);
+    addFigureFiles(view);
+  }
   return {root, figures, views};
 }
 
@@ -182,6 +185,7 @@ function resizeWithPage() {
 }
 
 makeTablesSortable(document.body);
+for (const overview of document.querySelectorAll('.overview')) addOverviewFiles(overview);
 listenToTheme();
 readFragment();
 listenToControls();

@@ -14,7 +14,9 @@ import {pathToFileURL} from 'node:url';
 import {closeBrowser, openPage} from './browser.mjs';
 import {makeOtherPages, makeReport} from './make_report.mjs';
 import * as access from './access.mjs';
+import * as files from './figure_files.mjs';
 import * as look from './look.mjs';
+import {figure} from './page_parts.mjs';
 import * as tables from './tables.mjs';
 import * as use from './use.mjs';
 
@@ -99,6 +101,23 @@ async function checkTables(file, name, column) {
   });
 }
 
+async function checkFigureFiles(file, shape) {
+  await withPage(file, shape, '', async (page, test) => {
+    for (const id of await look.visibleFigures(page)) {
+      await test(`the SVG of ${id} has what is shown`, () => files.svgMirrorsFigure(page, id));
+    }
+    for (const id of ['budget', 'distributions', 'frame_errors', 'gathering', 'first_seconds']) {
+      await test(`the SVG of ${id} looks like it`, () => files.svgLooksLikeCanvas(page, id));
+    }
+    await test('the SVG leaves out what is hidden', () => files.svgLeavesOutHidden(page, 'frame_errors'));
+    await test('the SVG of the overview has all pipelines', () => files.svgHasOverview(page));
+    await test('the PNG of a figure has its colours', () =>
+        files.pngShowsFigure(page, figure(page, 'frame_errors')));
+    await test('the PNG of the overview has its colours', () =>
+        files.pngShowsFigure(page, files.overview(page)));
+  });
+}
+
 async function checkUse(file) {
   await withPage(file, kShapes[0], '', async (page, test) => {
     await test('dragging zooms, a double click and the button reset', () => use.zooms(page));
@@ -157,6 +176,8 @@ for (const file of [one, ...Object.values(makeOtherPages(simbench, folder))]) {
   for (const shape of kAccessShapes) await checkAccess(file, shape);
 }
 await checkTables(one, "The paper's metrics", 1);
+await checkFigureFiles(one, kShapes[0]);
+await checkFigureFiles(one, kShapes[1]);
 await checkUse(one);
 await checkLink(one);
 await checkPrint(one);
