@@ -10,7 +10,8 @@ function(join_modules result)
   endforeach()
   set(${result} "${script}" PARENT_SCOPE)
 endfunction()
-set(figure_modules data axes overlay chart photographs downloads table_values tables figure_view chart_svg figure_svg overview_svg figure_files)
+set(figure_modules data axes overlay chart photographs downloads table_values print tables figure_view
+             chart_svg figure_svg overview_svg figure_files)
 join_modules(script ${figure_modules} report)
 join_modules(explore_script ${figure_modules} scale states server parameters world_view
              explore)

@@ -85,6 +85,16 @@ function makeLegendReachable(chart) {
   }
 }
 
+// uPlot colours the entries once; themes and paper have colours of their own.
+function colourEntries(chart, panel) {
+  const rows = chart.root.querySelectorAll('.u-legend .u-series');
+  panel.series.forEach(({colour, mark}, i) => {
+    const marker = rows[i + 1].querySelector('.u-marker');
+    marker.style.borderColor = seriesColour(colour);
+    if (mark === 'bars') marker.style.background = seriesColour(colour);
+  });
+}
+
 // `marked()`: the pulse to mark, or null.
 function makeChart(host, panel, columns, marked) {
   const data = alignedData(panel, columns);
@@ -113,7 +123,10 @@ function makeChart(host, panel, columns, marked) {
       init: [(chart) => chart.groups = panel.series.map(
                  (series) => panel.series.indexOf(alike(panel, series)[0]))],
       drawAxes: [(chart) => drawNotes(chart, () => drawSpans(chart, panel))],
-      draw: [(chart) => drawNotes(chart, () => drawAbove(chart, panel, marked()))],
+      draw: [
+        (chart) => drawNotes(chart, () => drawAbove(chart, panel, marked())),
+        (chart) => colourEntries(chart, panel),
+      ],
       setSeries: [(chart, number, {show}) => showAlike(chart, number, show)],
       ready: [makeLegendReachable, hideRepeatedEntries],
     },

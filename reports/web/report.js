@@ -3,8 +3,6 @@
 // The choices are in the fragment of the address, so that a link shows another reader the same:
 //   #archive=0&pipeline=yoon2021_both&seed=1&figure=frame_errors&pulse=312
 
-const kPrintWidth = 680;  // CSS pixels: a page of A4 or Letter less its margins
-
 const controls = Object.fromEntries(
     ['archive', 'pipeline', 'seed', 'jump', 'pulse', 'theme'].map(
         (id) => [id, document.getElementById(id)]));

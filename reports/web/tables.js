@@ -1,4 +1,4 @@
-// Tables that a reader sorts by their headings and takes away as CSV.
+// Tables that a reader sorts by their headings, takes away as CSV, and prints (print.js).
 //
 //   makeTablesSortable(document.body);   // again for tables that come later: the others stay
 //
@@ -66,5 +66,6 @@ function makeTablesSortable(root) {
     table.dataset.sortable = '';
     if (rowsOf(table).length > 1) addSorting(table);
     addCsv(table);
+    fitOnPaper(table);
   }
 }

@@ -1,5 +1,6 @@
 // What is checked of a page that is looked at; each of these throws when it is not so.
 import assert from 'node:assert/strict';
+import {inflateSync} from 'node:zlib';
 
 import {bringUp, figure, pixelsOf} from './page_parts.mjs';
 
@@ -86,6 +87,67 @@ export async function printsLight(page) {
   assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
                'rgb(255, 255, 255)');
   assert.equal(await page.evaluate(() => getComputedStyle(document.body).color), 'rgb(0, 0, 0)');
+}
+
+// What a PDF fills with paint, by its colour: "r g b" -> how often.
+function fillsOf(pdf) {
+  const fills = new Map();
+  const text = pdf.toString('latin1');
+  for (const {index, 0: opening} of text.matchAll(/FlateDecode[^>]*>>\s*stream\r?\n/g)) {
+    const from = index + opening.length;
+    const content = inflateSync(pdf.subarray(from, text.indexOf('endstream', from))).toString('latin1');
+    for (const [, colour] of content.matchAll(/([\d.]+ [\d.]+ [\d.]+) rg\b/g)) {
+      fills.set(colour, (fills.get(colour) ?? 0) + 1);
+    }
+  }
+  return fills;
+}
+
+// As a printer without ink for backgrounds gets it.
+const printed = async (page) => fillsOf(await page.pdf({format: 'A4', printBackground: false}));
+
+// The colours of paper, as a PDF writes them.
+const coloursOf = (page, selector, property) => page.locator(selector).first().evaluate(
+    (element, name) => getComputedStyle(element)[name].match(/[\d.]+/g).slice(0, 3).map(
+        (value) => String(+(value / 255).toFixed(4)).replace(/^0\./, '.')).join(' '), property);
+
+// The overview's bands and dots are backgrounds, which a browser leaves out unless it is told otherwise.
+export async function printsFirstFigure(page) {
+  await page.emulateMedia({media: 'print'});
+  const band = await coloursOf(page, '.overview .band', 'backgroundColor');
+  const best = await coloursOf(page, '.overview .best .dot', 'backgroundColor');
+  await page.emulateMedia({media: null});
+  const all = await printed(page);
+  await page.evaluate(() => document.querySelectorAll('.overview i').forEach((mark) => mark.style.visibility = 'hidden'));
+  const without = await printed(page);
+  await page.evaluate(() => document.querySelectorAll('.overview i').forEach((mark) => mark.style.visibility = ''));
+  const bands = await page.locator('.archive:not([hidden]) .overview .band').count();
+  assert.ok(bands >= 3);
+  assert.ok(all.get(band) >= (without.get(band) ?? 0) + bands - 1, `bands: ${all.get(band)}, ${without.get(band)}`);
+  assert.ok(all.get(best) >= (without.get(best) ?? 0) + 2, `best: ${all.get(best)}, ${without.get(best)}`);
+}
+
+// Every colour of a series is in the PDF, from a light page and from a dark one.
+export async function printsSeries(page) {
+  const fills = await printed(page);
+  for (const colour of ['.1216 .4353 .7059', '.8196 .2863 .1059', '.1647 .5412 .2902']) {
+    assert.ok(fills.get(colour) > 5, `${colour}: ${fills.get(colour)}`);
+  }
+}
+
+// At the width of a page, where nothing scrolls.
+export async function printsWholeTables(page) {
+  const before = page.viewportSize();
+  await page.setViewportSize({width: 680, height: 900});
+  await page.emulateMedia({media: 'print'});
+  const wide = await page.locator('.scroll > table:visible').evaluateAll((tables) => tables.filter(
+      (table) => table.getBoundingClientRect().right > innerWidth + 1 || table.getBoundingClientRect().left < -1)
+      .map((table) => `${table.caption.textContent}: ${table.getBoundingClientRect().right}`));
+  const buttons = await page.locator('button:visible:not(.sort)').count();
+  await page.emulateMedia({media: null});
+  await page.setViewportSize(before);
+  assert.deepEqual(wide, []);
+  assert.equal(buttons, 0, 'buttons on paper');
 }
 
 export async function isWideAgain(page) {

@@ -86,6 +86,7 @@ async function checkAccess(file, shape) {
     await test('the keyboard reaches everything, visibly', () => access.keyboardReachesAll(page));
     await test('every control has a name', () => look.controlsAreNamed(page));
     await test('every table can be sorted and saved', () => tables.everyTableHasControls(page));
+    await test('on paper no table is cut off', () => look.printsWholeTables(page));
   });
 }
 
@@ -154,6 +155,12 @@ async function checkPrint(file) {
     await page.emulateMedia({media: 'screen'});
     await test('afterwards the figures fill the screen again', () => look.isWideAgain(page));
   });
+  for (const shape of [kShapes[0], kShapes[1]]) {
+    await withPage(file, shape, '', async (page, test) => {
+      await test('without backgrounds the first figure is whole', () => look.printsFirstFigure(page));
+      await test('series are printed in the colours of paper', () => look.printsSeries(page));
+    });
+  }
 }
 
 async function checkArchives(file) {
