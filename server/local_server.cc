@@ -1,6 +1,7 @@
 #include "server/local_server.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -19,8 +20,9 @@
 #include <exception>
 #include <list>
 #include <mutex>
-#include <optional>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "server/guard.h"
 
@@ -53,8 +55,10 @@ void add_rules(http::fields& head) {
 // What is sent to one reader as it comes: fed from any thread, emptied on the server's.
 class ReaderStream final : public PageStream, public std::enable_shared_from_this<ReaderStream> {
  public:
-  ReaderStream(asio::any_io_executor executor, std::size_t most_waiting)
-      : most_waiting_(most_waiting), wake_(std::move(executor)) {
+  // `server` is kept, since whoever feeds the stream may do so for longer than the server runs.
+  ReaderStream(std::shared_ptr<void> server, asio::any_io_executor executor,
+               std::size_t most_waiting)
+      : server_(std::move(server)), most_waiting_(most_waiting), wake_(std::move(executor)) {
     wake_.expires_at(asio::steady_timer::time_point::max());
   }
 
@@ -144,6 +148,7 @@ class ReaderStream final : public PageStream, public std::enable_shared_from_thi
     asio::post(wake_.get_executor(), [self = shared_from_this()] { self->wake_.cancel(); });
   }
 
+  const std::shared_ptr<void> server_;
   const std::size_t most_waiting_;
   asio::steady_timer wake_;
   mutable std::mutex mutex_;  // guards what follows
@@ -165,6 +170,18 @@ struct Connection {
   beast::tcp_stream stream;
   bool is_trusted = false;  // has shown the token
 };
+
+// What is said of a request that could not be read; nothing of a connection that ended.
+PageRefusal refusal_of(const error_code& failed) {
+  const error_code end = http::make_error_code(http::error::end_of_stream);
+  if (failed == http::make_error_code(http::error::body_limit)) {
+    return {413, "the body is larger than any that is sent here"};
+  }
+  const bool is_end = failed.category() != end.category() || failed == end ||
+                      failed == http::make_error_code(http::error::partial_message);
+  if (is_end) return {};
+  return {400, "no request of HTTP, or too long a head"};
+}
 
 RequestHead head_of(const http::request<http::string_body>& request) {
   const auto field = [&request](auto name) { return std::string_view(request[name]); };
@@ -286,10 +303,8 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
       const auto [failed, head_bytes] =
           co_await http::async_read_header(connection.stream, buffer, parser, kResult);
       if (failed) {
-        if (failed.category() == http::make_error_code(http::error::bad_method).category() &&
-            failed != http::error::end_of_stream) {
-          co_await refuse(connection, {400, "no request of HTTP, or too long a head"});
-        }
+        const PageRefusal refusal = refusal_of(failed);
+        co_await refuse(connection, refusal);
         co_return;
       }
       if (const PageRefusal refusal = guard_.judge(head_of(parser.get()))) {
@@ -301,16 +316,16 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
       const auto [broken, body_bytes] =
           co_await http::async_read(connection.stream, buffer, parser, kResult);
       if (broken) {
-        if (broken == http::error::body_limit) {
-          co_await refuse(connection, {413, "the body is larger than any that is sent here"});
-        }
+        const PageRefusal refusal = refusal_of(broken);
+        co_await refuse(connection, refusal);
         co_return;
       }
-      goes_on = co_await answer(connection, parser.get(), buffer);
+      goes_on = co_await answer(connection, parser.get());
     }
   }
 
-  asio::awaitable<void> refuse(Connection& connection, const PageRefusal& refusal) {
+  asio::awaitable<void> refuse(Connection& connection, PageRefusal refusal) {
+    if (!refusal) co_return;
     ++refused_;
     http::response<http::string_body> response(http::int_to_status(refusal.status), 11);
     add_rules(response);
@@ -338,12 +353,11 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
 
   // Whether the connection goes on.
   asio::awaitable<bool> answer(Connection& connection,
-                               const http::request<http::string_body>& request,
-                               beast::flat_buffer& buffer) {
+                               const http::request<http::string_body>& request) {
     PageResponse made = handled(request);
     ++answered_;
     if (made.stream) {
-      co_await feed(connection, made, buffer);
+      co_await feed(connection, made);
       co_return false;
     }
     http::response<http::string_body> response(http::int_to_status(made.status), 11);
@@ -363,8 +377,7 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
   }
 
   // Sends a stream until its end or its reader's.
-  asio::awaitable<void> feed(Connection& connection, const PageResponse& made,
-                             beast::flat_buffer& buffer) {
+  asio::awaitable<void> feed(Connection& connection, const PageResponse& made) {
     http::response<http::empty_body> head(http::int_to_status(made.status), 11);
     add_rules(head);
     head.set(http::field::content_type, made.type);
@@ -375,11 +388,11 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
     const auto [failed, bytes] =
         co_await http::async_write_header(connection.stream, serializer, kResult);
     if (failed) co_return;
-    const auto stream =
-        std::make_shared<ReaderStream>(context_.get_executor(), options_.most_waiting_bytes);
+    const auto stream = std::make_shared<ReaderStream>(shared_from_this(), context_.get_executor(),
+                                                       options_.most_waiting_bytes);
     streams_.push_back(stream);
     connection.stream.expires_never();
-    asio::co_spawn(context_, notice_end(connection, stream, buffer), asio::detached);
+    asio::co_spawn(context_, notice_end(connection, stream), asio::detached);
     made.stream(stream);
     co_await send_pieces(connection, *stream);
     stream->close();
@@ -387,14 +400,11 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
     streams_.remove(stream);
   }
 
-  // Reads what the reader sends, which is nothing, until it goes. The connection outlives this: it
-  // is kept until its socket is closed.
-  asio::awaitable<void> notice_end(Connection& connection, std::shared_ptr<ReaderStream> stream,
-                                   beast::flat_buffer& buffer) {
+  // Reads what the reader sends, which is nothing, until it goes.
+  asio::awaitable<void> notice_end(Connection& connection, std::shared_ptr<ReaderStream> stream) {
     const std::shared_ptr<Core> self = shared_from_this();
     const auto keeps =
         *std::ranges::find(connections_, &connection, [](const auto& each) { return each.get(); });
-    (void)buffer;
     std::array<char, 256> ignored{};
     for (;;) {
       const auto [gone, bytes] =
@@ -441,8 +451,13 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
   std::atomic<std::uint64_t> displaced_ = 0;
 };
 
-LocalServer::LocalServer(ServerOptions options, Handler handler)
-    : core_(std::make_shared<Core>(options, std::move(handler))) {}
+LocalServer::LocalServer(ServerOptions options, Handler handler) {
+  try {
+    core_ = std::make_shared<Core>(options, std::move(handler));
+  } catch (const boost::system::system_error& failure) {
+    throw std::system_error(failure.code());
+  }
+}
 LocalServer::~LocalServer() = default;
 const std::string& LocalServer::address() const { return core_->address(); }
 std::uint16_t LocalServer::port() const { return core_->port(); }

@@ -5,7 +5,6 @@
 
 const kPatienceMs = 15000;  // without an event of a look that goes on, the server is asked again
 const kRetryMs = 2000;
-const kPrintWidth = 680;  // CSS pixels: a page of A4 or Letter less its margins
 
 const $ = (id) => document.getElementById(id);
 const server = new Server();
@@ -68,7 +67,8 @@ const handlers = {
       views[i].fade(false);
     });
     if (comparison) {
-      $('comparison_body').replaceChildren(answerElement(comparison.answer), fragmentOf(comparison.tables));
+      $('comparison_answer').replaceChildren(answerElement(comparison.answer));
+      showTables($('comparison_tables'), comparison.tables);
     }
     showPipelines(shown[shown.length - 1]);
     say(`${seeds} seeds after ${Math.round(elapsed_ms)} ms; more follow.`);
@@ -287,21 +287,13 @@ async function showText(path, title) {
     $('text_title').textContent = title;
     $('text').textContent = text;
     const file = path === 'command.txt' ? 'explored.sh' : path === 'script.py' ? 'explored.py' : 'explored.json';
-    $('save').onclick = () => download(new Blob([text], {type: 'text/plain'}), file);
+    $('save').onclick = () => saveFile(file, new Blob([text], {type: 'text/plain'}));
     $('copy').onclick = () => navigator.clipboard?.writeText(text);
     $('texts').showModal();
   } catch (error) {
     if (error instanceof Refused) showRefusal(error.message);
     else lostServer();
   }
-}
-
-function download(blob, name) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 function buildFigureChoice() {
@@ -359,11 +351,11 @@ function listen() {
   $('python').addEventListener('click', () => showText('script.py', 'The same in Python'));
   $('json').addEventListener('click', async () => {
     const seeds = Number($('views').dataset.seeds ?? subject.first_seeds);
-    download(new Blob([await server.results(states.now, seeds, 'json')]), 'results.json');
+    saveFile('results.json', new Blob([await server.results(states.now, seeds, 'json')]));
   });
   $('csv').addEventListener('click', async () => {
     const seeds = Number($('views').dataset.seeds ?? subject.first_seeds);
-    download(new Blob([await server.results(states.now, seeds, 'tidy')]), 'results.csv');
+    saveFile('results.csv', new Blob([await server.results(states.now, seeds, 'tidy')]));
   });
   $('close').addEventListener('click', () => $('texts').close());
   document.addEventListener('keydown', pressed);

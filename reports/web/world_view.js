@@ -23,6 +23,25 @@ function fragmentOf(html) {
   return template.content;
 }
 
+// What each table is sorted by, so that its successor is too.
+function sortsOf(root) {
+  return Array.from(root.querySelectorAll('th[aria-sort]'), (heading) => ({
+    caption: heading.closest('table').caption?.textContent, column: heading.cellIndex,
+    uses: heading.getAttribute('aria-sort') === 'ascending' ? 1 : 2,
+  }));
+}
+
+function showTables(root, html) {
+  const sorts = sortsOf(root);
+  root.replaceChildren(fragmentOf(html));
+  makeTablesSortable(root);
+  for (const table of root.querySelectorAll('table[data-sortable]')) {
+    const sort = sorts.find(({caption}) => caption === table.caption?.textContent);
+    const head = sort && table.tHead.rows[0].cells[sort.column]?.querySelector('button');
+    for (let i = 0; head && i < sort.uses; ++i) head.click();
+  }
+}
+
 const kFigurePlaces = ['seeds', 'run', 'budget'];
 
 class WorldView {
@@ -58,8 +77,9 @@ class WorldView {
   showPicture(view) {
     this.answer.replaceChildren(answerElement(view.answer));
     this.overview.replaceChildren(fragmentOf(view.overview));
-    this.table.replaceChildren(fragmentOf(view.table));
-    this.tables.replaceChildren(fragmentOf(view.tables));
+    for (const overview of this.overview.querySelectorAll('.overview')) addOverviewFiles(overview);
+    showTables(this.table, view.table);
+    showTables(this.tables, view.tables);
   }
 
   showFigures({of, notes, data}) {
@@ -71,7 +91,10 @@ class WorldView {
     place.style.minHeight = `${place.offsetHeight}px`;
     place.replaceChildren(...views.map(({root}) => root),
                           ...notes.map((text) => element('p', 'legend', text)));
-    for (const view of views) view.draw();
+    for (const view of views) {
+      view.draw();
+      addFigureFiles(view);
+    }
     place.style.minHeight = '';
     this.views = [...this.views.filter((view) => view.root.isConnected), ...views];
   }

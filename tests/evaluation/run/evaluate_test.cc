@@ -260,5 +260,45 @@ TEST(EvaluateTest, WarnsWhenGenlockOrderIsNotTheTruth) {
   EXPECT_EQ(results.rows[0].seeds[0].genlock_index_errors, 12);
 }
 
+TEST(GrowingEvaluationTest, MoreSeedsGiveWhatAllAtOnceGive) {
+  const Scenario scenario = test_scenario();
+  GrowingEvaluation growing(scenario, test_source, {.first_seed = 3});
+  for (const std::uint64_t seeds : {2, 5, 4, 9}) {
+    const Results& grown = growing.up_to(seeds);
+    const std::uint64_t expected = seeds == 4 ? 5 : seeds;  // fewer are as many as before
+    const Results at_once = evaluate(
+        scenario, test_source, {.first_seed = 3, .seeds = expected, .keep_pulses = true}, nullptr);
+    EXPECT_EQ(grown.seed_count, expected);
+    ASSERT_EQ(grown.rows.size(), at_once.rows.size());
+    for (std::size_t row = 0; row < grown.rows.size(); ++row) {
+      expect_equal(grown.rows[row], at_once.rows[row]);
+      ASSERT_FALSE(grown.rows[row].seeds.empty());
+      EXPECT_EQ(grown.rows[row].seeds.front().pulses.size(),
+                at_once.rows[row].seeds.front().pulses.size());
+    }
+    EXPECT_EQ(grown.performance.events, at_once.performance.events);
+  }
+}
+
+// A source that counts its captures.
+TEST(GrowingEvaluationTest, NoSeedRunsTwice) {
+  struct Counting final : RecordingSource {
+    explicit Counting(std::vector<std::uint64_t>& its_seeds) : seeds(its_seeds) {}
+    RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+      seeds.push_back(request.seed);
+      return source.record(request, sink);
+    }
+    TestSource source;
+    std::vector<std::uint64_t>& seeds;
+  };
+  std::vector<std::uint64_t> seeds;
+  const Scenario scenario = test_scenario();
+  GrowingEvaluation growing(scenario, [&] { return std::make_unique<Counting>(seeds); },
+                            {.jobs = 1, .pipelines = {"arrival"}});
+  growing.up_to(2);
+  growing.up_to(5);
+  EXPECT_THAT(seeds, ElementsAre(1, 2, 3, 4, 5));
+}
+
 }  // namespace
 }  // namespace simbench::evaluation
