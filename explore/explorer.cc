@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "explore/measured.h"
 #include "explore/parameters.h"
 #include "recording/version.h"
 #include "reports/archive/archive.h"
@@ -74,6 +75,9 @@ PageResponse Explorer::subject_response() const {
   }
   return {.type = kJson,
           .body = text_of({{"subject", subject_.name},
+                           {"pipelines", subject_.pipelines},
+                           {"first_seed", subject_.first_seed},
+                           {"measured", subject_.measured ? subject_.measured->panel : Json()},
                            {"scenarios", std::move(scenarios)},
                            {"figures", figures_json()},
                            {"first_seeds", kFirstSeeds},

@@ -11,6 +11,7 @@
 #include "app/interrupt.h"
 #include "app/results_text.h"
 #include "evaluation/answer/answer.h"
+#include "explore/measured.h"
 #include "explore/picture.h"
 #include "recording/collected.h"
 #include "recording/recording.h"
@@ -115,6 +116,10 @@ bool Look::make_step() {
       return true;
     case Stage::kRun:
       if (!request_.figures.empty()) make_figures("run", request_.figures, false);
+      stage_ = Stage::kBeside;
+      return true;
+    case Stage::kBeside:
+      if (subject_.measured) make_beside();
       stage_ = Stage::kBudget;
       return true;
     case Stage::kBudget:
@@ -219,6 +224,15 @@ void Look::make_figures(const char* of, const std::vector<std::string>& ids, boo
                   {"pipeline", view.pipeline},
                   {"notes", made.notes},
                   {"data", Json::parse(reports::figures_json(made.figures))}};
+    send(event);
+  }
+}
+
+void Look::make_beside() {
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (request_.states[i].scenario != subject_.name) continue;
+    Json event = {{"event", "beside"}, {"state", i}};
+    event.update(beside_json(*subject_.measured, views_[i]->world));
     send(event);
   }
 }

@@ -9,7 +9,8 @@
 //     comparison_of()}
 //   {"event": "figures", "state": 0, "of": "seeds", "run" or "budget", "pipeline", "notes", "data":
 //     figures_json()}
-//   {"event": "levers", "answer", "rows"}
+//   {"event": "beside", "state": 0, ...: beside_json()}, of a rig that was measured
+//   {"event": "levers", "answer", "levers": [{"what", "pipeline", "sets", "from", "to"}]}
 //   {"event": "end", "seeds": 128, "why": ""}
 //   {"event": "failed", "message"}
 //
@@ -69,12 +70,13 @@ class Look {
 
  private:
   struct View;
-  enum class Stage { kWorlds, kPicture, kRun, kBudget, kMore, kLevers, kText, kEnd };
+  enum class Stage { kWorlds, kPicture, kRun, kBeside, kBudget, kMore, kLevers, kText, kEnd };
 
   bool make_step();
   void make_worlds();
   void make_picture(std::uint64_t seeds);
   void make_figures(const char* of, const std::vector<std::string>& ids, bool budget);
+  void make_beside();
   void make_levers();
   void make_text();
   std::uint64_t affordable_seeds() const;

@@ -79,8 +79,8 @@ void add_schema(const Json& node, const Json& value, Json& parameter) {
 }
 
 bool is_settable(const std::string& pointer, const Json& value) {
-  for (const char* const fixed :
-       {"/pipelines", "/published", "/name", "/summary", "/schema_version", "/$schema", "/base"}) {
+  for (const char* const fixed : {"/pipelines", "/published", "/name", "/summary",
+                                  "/schema_version", "/$schema", "/base", "/fitted_to"}) {
     if (pointer.starts_with(fixed)) return false;
   }
   return !scenarios::is_table(value) && !(value.is_array() && value.size() > kLongestList);

@@ -28,7 +28,8 @@ constexpr std::size_t kLongestName = 300;
 
 // What of a state is no value of a world.
 constexpr std::array kFixed = {"/pipelines",      "/name",      "/summary",
-                               "/schema_version", "/published", "/published_figures"};
+                               "/schema_version", "/published", "/published_figures",
+                               "/fitted_to"};
 
 [[noreturn]] void refuse_form(const std::string& what) {
   throw StateRefused("", "the page sent " + what);
@@ -68,11 +69,6 @@ const Json& list_in(const Json& json, const char* member, std::size_t most) {
     refuse_form(fmt::format("no list of at most {} as {}", most, member));
   }
   return *found;
-}
-
-bool is_builtin(const std::string& name) {
-  const std::vector<scenarios::BuiltinScenario> all = scenarios::builtin_scenarios();
-  return std::ranges::count(all, name, &scenarios::BuiltinScenario::name) > 0;
 }
 
 // The changes of the command line come first: they belong to what the user named.
@@ -171,10 +167,15 @@ std::string whole_file(const Scenario& scenario) {
 
 }  // namespace
 
+bool is_builtin_scenario(const std::string& name) {
+  const std::vector<scenarios::BuiltinScenario> all = scenarios::builtin_scenarios();
+  return std::ranges::count(all, name, &scenarios::BuiltinScenario::name) > 0;
+}
+
 State state_of(const Json& json, const PageSubject& subject) {
   if (!json.is_object() || !json.contains("scenario")) refuse_form("a state without a scenario");
   State state{.scenario = name_in(json.at("scenario"), "a scenario")};
-  if (state.scenario != subject.name && !is_builtin(state.scenario)) {
+  if (state.scenario != subject.name && !is_builtin_scenario(state.scenario)) {
     throw StateRefused("", fmt::format("'{}' is neither a scenario of the distribution nor what "
                                        "this page was started with",
                                        scenarios::shown_text(state.scenario)));

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -27,11 +28,16 @@ namespace simbench::explore {
 inline constexpr std::uint64_t kFirstSeeds = 8;  // of the first picture
 inline constexpr std::uint64_t kMostSeeds = 1024;
 
+struct Measured;
+
 // What the user named when the page was started.
 struct PageSubject {
   std::string name;                         // of a built-in scenario, or the path of a file
   std::optional<std::string> text{};        // of a file as it was then; nothing: built in
   std::vector<scenarios::Override> sets{};  // of the command line, which come first
+  std::vector<std::string> pipelines{};     // to begin with; empty: all
+  std::uint64_t first_seed = 1;
+  std::shared_ptr<const Measured> measured{};  // the rig that it was fitted to (measured.h)
 };
 
 struct State {
@@ -52,6 +58,9 @@ class StateRefused : public std::runtime_error {
  private:
   std::string pointer_;
 };
+
+// Whether a scenario of the distribution has this name.
+bool is_builtin_scenario(const std::string& name);
 
 // {"scenario", "sets": [{"pointer", "value": any JSON}], "pipelines": [names], "first_seed"}; all
 // but the scenario may be left out.

@@ -83,9 +83,10 @@ struct Scenario {
   std::vector<Pipeline> pipelines;
   std::map<std::string, Published> published;  // by pipeline name
   std::vector<PublishedFigure> published_figures;
-  std::optional<Studio> studio;     // only of scenarios that have one
-  Derivation derivation;            // from a built-in scenario
-  Lazy<std::string> resolved_json;  // fully resolved, pretty-printed
+  std::vector<std::string> fitted_to;  // paths of a recording; mostly none
+  std::optional<Studio> studio;        // only of scenarios that have one
+  Derivation derivation;               // from a built-in scenario
+  Lazy<std::string> resolved_json;     // fully resolved, pretty-printed
   std::shared_ptr<const Origin> origin;
 
   // The host that camera j is plugged into.

@@ -48,6 +48,7 @@ void for_each_section(AnyScenario& scenario, Visit visit) {
   visit("pipelines", scenario.pipelines);
   visit("published", scenario.published);
   visit("published_figures", scenario.published_figures);
+  visit("fitted_to", scenario.fitted_to);
   visit("studio", scenario.studio);
 }
 

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/input_options.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
+#include "evaluation/fit/fit.h"
 #include "explore/explorer.h"
-#include "scenarios/document.h"
+#include "explore/subject.h"
 #include "scenarios/loader.h"
 #include "server/local_server.h"
 
@@ -27,28 +32,38 @@ Examples:
   simbench explore
   simbench explore 3cam_1host_30fps
   simbench explore my_rig.json --port 8000
+  simbench explore results/monday                  the world of an archive
+  simbench explore front.bag back.bag              a rig that was recorded, fitted to it
 
 Exit status: 0 ended by Ctrl-C, 1 internal error, 2 bad usage or input.)";
 
 struct ExploreOptions {
-  std::string subject = kDefaultScenario;
+  std::vector<std::string> inputs;
+  InputOptions reading;
   std::vector<std::string> sets;
   std::uint64_t port = 0;
 };
 
-explore::PageSubject subject_of(const ExploreOptions& options) {
-  explore::PageSubject subject{.name = options.subject, .sets = overrides_of(options.sets)};
-  const scenarios::Scenario world =
-      scenarios::load_scenario(options.subject, overrides_of(options.sets));
-  print_warnings(scenarios::warnings(world));
-  if (options.subject.ends_with(".json")) {
-    subject.text = scenarios::read_input_file(options.subject, options.subject, "scenario");
-  }
-  return subject;
+// Nothing after Ctrl-C.
+std::optional<explore::FoundSubject> found_subject(const ExploreOptions& options) {
+  const explore::SubjectChoice choice{.sets = overrides_of(options.sets),
+                                      .files = file_options(options.reading)};
+  std::vector<std::string> inputs = options.inputs;
+  if (inputs.empty()) inputs.emplace_back(kDefaultScenario);
+  return watched_reading<explore::FoundSubject>(
+      [&](const ReadProgress& progress) { return explore::subject_of(inputs, choice, progress); });
 }
 
 int explore_by_hand(const ExploreOptions& options) {
-  explore::Explorer explorer(subject_of(options));
+  std::optional<explore::FoundSubject> found;
+  try {
+    found = found_subject(options);
+  } catch (const evaluation::FitError& error) {
+    throw scenarios::InputError(error.what());
+  }
+  if (!found) return kInterrupted;
+  for (const std::string& note : found->notes) print_note(note);
+  explore::Explorer explorer(std::move(found->subject));
   try {
     server::LocalServer server(
         {.port = static_cast<std::uint16_t>(options.port), .stops_on_signals = true},
@@ -70,9 +85,11 @@ int explore_by_hand(const ExploreOptions& options) {
 void add_explore_command(CommandLine& line) {
   auto options = std::make_shared<ExploreOptions>();
   Command command(line, "explore", "Change a world by hand in a browser and see what follows");
-  command.text("scenario", "SCENARIO", options->subject,
-               "Name of a scenario, or path of a scenario file. Default: 18cam_6host_45fps");
+  command.texts("subject", "SCENARIO", options->inputs,
+                "A scenario by name or file, the folder of `simbench run --output`, or a recording "
+                "as\n`simbench fit` takes it, which is fitted. Default: 18cam_6host_45fps");
   command.sets(options->sets);
+  add_input_options(command, options->reading);
   command.whole_number("--port", "PORT", options->port, 0, 65535,
                        "The port to listen on. Default: a free one");
   command.footer(kExploreExamples);

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "app/answer.h"
+#include "app/fit_task.h"
 #include "app/fitted_ranking.h"
 #include "app/interrupt.h"
-#include "app/recorded_streams.h"
 #include "app/results_text.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
@@ -16,7 +16,6 @@
 #include "cli/progress.h"
 #include "evaluation/fit/fit_check.h"
 #include "evaluation/run/evaluate.h"
-#include "recording/recording_folder.h"
 #include "reports/recordings/fit_report.h"
 #include "reports/results/results_answer.h"
 #include "reports/text/output_file.h"
@@ -53,10 +52,7 @@ struct FitOptions {
   std::vector<std::string> inputs;
   InputOptions files;
   std::string output;
-  std::string base;
-  std::string pipeline;
-  std::optional<std::uint64_t> seed;
-  bool one_host = false;
+  app::FitChoice choice;
   bool rank = false;
   bool verbose = false;
   std::uint64_t seeds = 8;
@@ -64,91 +60,11 @@ struct FitOptions {
   std::string format;
 };
 
-// The data of a fit, and the scenario that gives the rest.
-struct FitTask {
-  evaluation::FitInput input;
-  evaluation::FitBase base;
-  std::string capture;
-};
-
-// The recording's own scenario: by name if it is an unchanged built-in one.
-evaluation::FitBase own_base(const std::string& folder, const std::string& scenario_json) {
-  evaluation::FitBase base{.scenario = scenarios::load_scenario_text(
-                               scenario_json, folder + "/manifest.json: scenario")};
-  const std::string& name = base.scenario.name;
-  for (const scenarios::BuiltinScenario& builtin : scenarios::builtin_scenarios()) {
-    if (builtin.name != name) continue;
-    if (scenarios::load_scenario(name).resolved_json() != base.scenario.resolved_json()) continue;
-    base.stated = name;
-  }
-  return base;
-}
-
-evaluation::FitBase stated_base(const std::string& name) {
-  return {.scenario = scenarios::load_scenario(name), .stated = name};
-}
-
-std::string captures_text(const std::vector<RecordedCapture>& captures) {
-  constexpr std::size_t kShown = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(captures.size(), kShown); ++i) {
-    text += fmt::format("{}{} seed {}", i > 0 ? ", " : "", captures[i].pipeline, captures[i].seed);
-  }
-  return captures.size() > kShown ? text + ", ..." : text;
-}
-
-std::size_t chosen_capture(const RecordingFolder& folder, const FitOptions& options) {
-  const std::vector<RecordedCapture>& captures = folder.captures();
-  const auto found =
-      std::find_if(captures.begin(), captures.end(), [&](const RecordedCapture& capture) {
-        return (options.pipeline.empty() || capture.pipeline == options.pipeline) &&
-               (!options.seed || capture.seed == *options.seed);
-      });
-  if (found != captures.end()) return static_cast<std::size_t>(found - captures.begin());
-  throw evaluation::FitError(captures.empty()
-                                 ? fmt::format("{}: found no capture", options.inputs.front())
-                                 : fmt::format("{}: found no such capture, allowed {}",
-                                               options.inputs.front(), captures_text(captures)));
-}
-
-FitTask task_of_folder(const FitOptions& options) {
-  const std::string& path = options.inputs.front();
-  if (options.one_host) {
-    throw evaluation::FitError("--one-host: found with a recording folder, which knows its hosts");
-  }
-  const RecordingFolder folder(path);
-  const std::size_t capture = chosen_capture(folder, options);
-  FitTask task;
-  task.base = options.base.empty() ? own_base(path, folder.description().scenario_json)
-                                   : stated_base(options.base);
-  evaluation::FitInputSink sink({.hosts = folder.description().hosts,
-                                 .cameras = folder.description().cameras,
-                                 .warm_up_ms = task.base.scenario.timeline.warm_up_ms});
-  folder.play(capture, sink);
-  task.input = sink.take();
-  const RecordedCapture& chosen = folder.captures()[capture];
-  task.capture = fmt::format("{} seed {}{}", chosen.pipeline, chosen.seed,
-                             chosen.complete ? "" : ", which has no end");
-  return task;
-}
-
-std::optional<FitTask> task_of_files(const FitOptions& options) {
-  if (!options.pipeline.empty() || options.seed) {
-    throw evaluation::FitError("--pipeline and --seed choose a capture of a recording folder");
-  }
-  FitTask task;
-  const auto recordings = read_inputs(options.inputs, options.files);
-  if (!recordings) return std::nullopt;
-  task.input = evaluation::fit_input(recordings->streams, options.one_host);
-  task.base =
-      options.base.empty() ? evaluation::default_base(task.input) : stated_base(options.base);
-  return task;
-}
-
 // Nothing after Ctrl-C.
-std::optional<FitTask> task_of(const FitOptions& options) {
-  if (app::recording_folder_of(options.inputs)) return task_of_folder(options);
-  return task_of_files(options);
+std::optional<app::FitTask> task_of(const FitOptions& options) {
+  return watched_reading<app::FitTask>([&](const ReadProgress& progress) {
+    return app::fit_task(options.inputs, options.choice, file_options(options.files), progress);
+  });
 }
 
 // The model under every pipeline.
@@ -194,9 +110,10 @@ int run_fit(const FitOptions& options) {
   reports::OutputFile output(options.output);
   reports::FitReport report;
   try {
-    const std::optional<FitTask> chosen = task_of(options);
+    const std::optional<app::FitTask> chosen = task_of(options);
     if (!chosen) return kInterrupted;
-    const FitTask& task = *chosen;
+    const app::FitTask& task = *chosen;
+    for (const std::string& note : task.notes) print_note(note);
     report.inputs = options.inputs;
     report.capture = task.capture;
     report.base = task.base.scenario.name;
@@ -234,16 +151,17 @@ void add_fit_command(CommandLine& line) {
       .output("-o,--output", "FILE.json", options->output,
               "The scenario file to write. Replaces an earlier file")
       .required();
-  command.text("--base", "SCENARIO", options->base,
+  command.text("--base", "SCENARIO", options->choice.base,
                "Scenario (name or file) that gives what is not fitted.\n"
                "Default: the recording's own; for files a built-in one with their counts "
                "and rate");
-  command.text("--pipeline", "NAME", options->pipeline,
+  command.text("--pipeline", "NAME", options->choice.pipeline,
                "Pipeline of the capture, in a folder with several. Default: the first");
-  command.whole_number("--seed", "K", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
+  command.whole_number("--seed", "K", options->choice.seed, 0,
+                       std::numeric_limits<std::uint64_t>::max(),
                        "Likewise: seed of the capture, or its repetition on a rig");
   add_input_options(command, options->files);
-  command.flag("--one-host", options->one_host,
+  command.flag("--one-host", options->choice.one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
   command.flag(
       "--rank", options->rank,

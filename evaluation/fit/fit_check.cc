@@ -165,13 +165,12 @@ RigFit simulate_fit(const scenarios::Scenario& model, std::int64_t pulses,
 }
 
 FitCheck check_fit(const RigFit& recorded, const RigFit& fitted, const scenarios::Scenario& model,
-                   const std::vector<std::string>& cameras, const WorldFactory& make_world) {
-  // As many frames as were recorded, within reason.
+                   const std::vector<std::string>& cameras, const WorldFactory& make_world,
+                   std::int64_t most_pulses) {
   constexpr std::int64_t kFewest = 1000;
-  constexpr std::int64_t kMost = 200'000;
   const auto streams = static_cast<std::int64_t>(recorded.streams.size());
   const std::int64_t lost = recorded.drops ? recorded.drops->lost : 0;
-  const std::int64_t pulses = std::clamp((recorded.frames + lost) / streams, kFewest, kMost);
+  const std::int64_t pulses = std::clamp((recorded.frames + lost) / streams, kFewest, most_pulses);
   const RigFit simulated = simulate_fit(model, pulses, make_world);
   FitCheck check;
   check.recorded = fit_side(recorded);

@@ -85,9 +85,12 @@ struct FitStudy {
 RigFit simulate_fit(const scenarios::Scenario& model, std::int64_t pulses,
                     const WorldFactory& make_world, std::uint64_t seed = 1);
 
-// `fitted`: what the model was made from. `cameras`: their names.
+// `fitted`: what the model was made from. `cameras`: their names. As many frames are simulated as
+// were recorded, kMostChecked of each camera at most, or `most_pulses`.
+inline constexpr std::int64_t kMostChecked = 200'000;
 FitCheck check_fit(const RigFit& recorded, const RigFit& fitted, const scenarios::Scenario& model,
-                   const std::vector<std::string>& cameras, const WorldFactory& make_world);
+                   const std::vector<std::string>& cameras, const WorldFactory& make_world,
+                   std::int64_t most_pulses = kMostChecked);
 
 // Fits, and checks both ways. Errors: FitError, scenarios::InputError.
 FitStudy study_fit(const FitInput& input, const FitBase& base, const std::string& path,

@@ -222,10 +222,14 @@ std::string name_from(const std::string& path) {
   return name.substr(0, kLongestName);
 }
 
-std::string stated_base(const FitBase& base, const std::string& path) {
-  if (!base.stated.ends_with(".json")) return base.stated;
+// A path as the file at `path` states it.
+std::string seen_from(const std::string& path, const std::string& other) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  return std::filesystem::proximate(std::filesystem::absolute(base.stated), folder).string();
+  return std::filesystem::proximate(std::filesystem::absolute(other), folder).string();
+}
+
+std::string stated_base(const FitBase& base, const std::string& path) {
+  return base.stated.ends_with(".json") ? seen_from(path, base.stated) : base.stated;
 }
 
 // The host of each camera.
@@ -443,6 +447,10 @@ FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base
   document["name"] = name_from(path);
   document["summary"] = summary_of(model, fit, base);
   document.merge_patch(members(fit, input, base, tables));
+  if (!base.recording.empty()) {
+    document["fitted_to"] = collected(
+        base.recording, [&](const std::string& recorded) { return seen_from(path, recorded); });
+  }
   model.text = tables.write(document);
   model.scenario = scenarios::load_scenario_text(model.text, path);
   return model;

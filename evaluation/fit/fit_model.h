@@ -32,7 +32,8 @@ struct FitBase {
   std::optional<double> mode_rate_hz = {};
   // The fast camera: a D435 in its mode of 848 x 100 pixels at 300 Hz.
   bool fast_camera = false;
-  std::string left_out = {};  // a line, if the recording's rate is not the model's
+  std::string left_out = {};                // a line, if the recording's rate is not the model's
+  std::vector<std::string> recording = {};  // its paths, which the file states
 };
 
 // Returns the nearest built-in scenario, for recordings of real cameras without one, with the

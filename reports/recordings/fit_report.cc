@@ -49,8 +49,14 @@ std::string verdicts_text(const FitCheck& check) {
   return text;
 }
 
-std::string fit_check_text(const std::string& heading, const FitCheck& check,
-                           const std::vector<std::string>& cameras) {
+std::string delay_distance_text(const FitCheck& check) {
+  return fmt::format(
+      "Kolmogorov-Smirnov distance {:.4f} but for a constant; two samples of one distribution "
+      "exceed {:.4f} in 5 % of all cases at most.",
+      check.ks, check.ks_limit);
+}
+
+Table fit_check_table(const FitCheck& check, const std::vector<std::string>& cameras) {
   Table table({{"", Align::kLeft}, {"recorded"}, {"simulated"}});
   const FitSide& recorded = check.recorded;
   const FitSide& simulated = check.simulated;
@@ -67,11 +73,13 @@ std::string fit_check_text(const std::string& heading, const FitCheck& check,
     table.add({fmt::format("drift of {}, ppm", cameras[i]), estimate_text(recorded.skew_ppm[i]),
                estimate_text(simulated.skew_ppm[i])});
   }
-  return fmt::format(
-      "\n{}\n\n{}\nKolmogorov-Smirnov distance {:.4f} but for a constant; two samples of one "
-      "distribution "
-      "exceed {:.4f} in 5 % of all cases at most.\n{}",
-      heading, plain(table), check.ks, check.ks_limit, verdicts_text(check));
+  return table;
+}
+
+std::string fit_check_text(const std::string& heading, const FitCheck& check,
+                           const std::vector<std::string>& cameras) {
+  return fmt::format("\n{}\n\n{}\n{}\n{}", heading, plain(fit_check_table(check, cameras)),
+                     delay_distance_text(check), verdicts_text(check));
 }
 
 constexpr const char* kFitLegend = R"(
@@ -134,6 +142,16 @@ Json fit_check_json(const char* name, const FitCheck& check,
 }
 
 }  // namespace
+
+Block fit_check_block(const std::string& heading, const FitCheck& check,
+                      const std::vector<std::string>& cameras) {
+  Block block{.heading = heading, .table = fit_check_table(check, cameras)};
+  block.prose.push_back(delay_distance_text(check));
+  for (const evaluation::FitVerdict& verdict : check.verdicts) {
+    block.items.push_back((verdict.agrees ? "agrees: " : "DIFFERS: ") + verdict.text);
+  }
+  return block;
+}
 
 std::string fit_table(const FitReport& report) {
   std::string text =

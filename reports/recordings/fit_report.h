@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "evaluation/fit/fit_check.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
@@ -27,6 +28,10 @@ struct FitReport {
   std::vector<std::string> cameras;  // names
   evaluation::FitStudy study;
 };
+
+// A recording beside what a model of it simulates; `cameras`: their names.
+Block fit_check_block(const std::string& heading, const evaluation::FitCheck& check,
+                      const std::vector<std::string>& cameras);
 
 std::string fit_table(const FitReport& report);
 std::string fit_json(const FitReport& report);

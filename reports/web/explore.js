@@ -13,6 +13,7 @@ const parameters = new ParameterPanel($('groups'), $('search'),
 let subject = null, states = null, choices = null;
 let shownScenario = '';
 let views = [];
+let measuredViews = [];
 let look = null;  // {abort, lastEvent}
 
 function say(text) {
@@ -77,6 +78,9 @@ const handlers = {
   },
   figures(event) {
     views[event.state].showFigures(event);
+  },
+  beside({state, table, text}) {
+    views[state].showBeside(table ?? '', text ?? '');
   },
   levers({answer, levers}) {
     showLevers(answer, levers);
@@ -296,6 +300,25 @@ async function showText(path, title) {
   }
 }
 
+// The rig that was recorded, as it was.
+function showMeasured({inputs, answer, trust, overview, tables, data}) {
+  const root = $('measured');
+  root.hidden = false;
+  const page = {columns: new Columns(data.columns), marked: () => null, preferred: ''};
+  const figures = data.figures.map((figure) => new FigureView([figure], page));
+  const more = element('details', 'more');
+  more.append(element('summary', '', 'All tables of the recording'), fragmentOf(tables));
+  root.append(element('h2', '', `Measured: ${inputs.join(', ')}`), answerElement(answer),
+              element('p', 'legend', `The model: ${trust}`), fragmentOf(overview),
+              ...figures.map((view) => view.root), more);
+  makeTablesSortable(root);
+  for (const view of figures) {
+    view.draw();
+    addFigureFiles(view);
+  }
+  measuredViews = figures;
+}
+
 function buildFigureChoice() {
   $('figures').replaceChildren(...[...subject.figures, {id: 'budget', title: 'Error budget'}].map(({id, title}) => {
     const label = element('label', 'tick');
@@ -381,7 +404,7 @@ function pressed(event) {
 function showTheme(theme) {
   document.documentElement.dataset.theme = theme;
   $('theme').setAttribute('aria-pressed', String(theme === 'dark'));
-  for (const view of views) view.redraw();
+  for (const view of [...views, ...measuredViews]) view.redraw();
 }
 
 function listenToTheme() {
@@ -397,7 +420,7 @@ function followSize() {
   addEventListener('resize', () => {
     if (innerWidth === width || matchMedia('print').matches) return;
     width = innerWidth;
-    for (const view of views) view.resize();
+    for (const view of [...views, ...measuredViews]) view.resize();
   });
   addEventListener('beforeprint', () => views.forEach((view) => view.resize(kPrintWidth)));
   addEventListener('afterprint', () => views.forEach((view) => view.resize()));
@@ -412,7 +435,10 @@ async function begin() {
     return;
   }
   states = new States(subject.subject, stateChanged);
+  states.now.pipelines = subject.pipelines;
+  states.now.first_seed = subject.first_seed;
   states.restore(location.hash);
+  if (subject.measured) showMeasured(subject.measured);
   const names = subject.scenarios.map(({name}) => name);
   if (!names.includes(subject.subject)) names.unshift(subject.subject);
   fillSelect($('scenario'), names.map((name) => [name, name]), states.now.scenario);

@@ -34,7 +34,8 @@ function selectElement(label, options, action) {
 }
 
 class FigureView {
-  // `page`: {columns, marked(), chosen(view, pulse), preferred: pipeline}; see report.js.
+  // `page`: {columns, marked(), chosen(view, pulse), preferred: pipeline}; see report.js. A page
+  // without links to its figures has no chosen().
   constructor(alternatives, page) {
     this.alternatives = alternatives;
     this.page = page;
@@ -74,6 +75,7 @@ class FigureView {
                         () => this.charts.forEach(resetZoom));
     const link = button('Link', `Link to ${this.alternatives[0].title}`,
                         () => this.page.chosen(this, null));
+    link.hidden = !this.page.chosen;
     tools.append(this.pipeline.wrapper, this.seed.wrapper, this.reset, link);
     return tools;
   }
@@ -145,7 +147,7 @@ class FigureView {
     chart.over.addEventListener('click', ({clientX}) => {
       if (Math.abs(clientX - from) > 3) return;
       const left = clientX - chart.over.getBoundingClientRect().left;
-      this.page.chosen(this, Math.round(chart.posToVal(left, 'x')));
+      this.page.chosen?.(this, Math.round(chart.posToVal(left, 'x')));
     });
   }
 

@@ -54,13 +54,15 @@ class WorldView {
     this.answer = element('div');
     this.overview = element('div');
     this.table = element('div');
+    this.beside = element('div');
     this.places = Object.fromEntries(kFigurePlaces.map((of) => [of, element('div', 'figures')]));
     this.more = element('details', 'more');
     this.more.append(element('summary', '', 'All tables'));
     this.tables = element('div');
     this.more.append(this.tables);
     this.root.append(this.head, this.world, this.warnings, this.answer, this.overview,
-                     this.places.seeds, this.places.run, this.places.budget, this.table, this.more);
+                     this.beside, this.table, this.places.run, this.places.budget, this.places.seeds,
+                     this.more);
     this.views = [];
   }
 
@@ -82,9 +84,15 @@ class WorldView {
     showTables(this.tables, view.tables);
   }
 
+  // A recording beside the simulation, or why it is not.
+  showBeside(table, text) {
+    showTables(this.beside, table);
+    if (text) this.beside.append(element('p', 'legend', text));
+  }
+
   showFigures({of, notes, data}) {
     const place = this.places[of];
-    const page = {columns: new Columns(data.columns), marked: () => null, chosen: () => {}, preferred: ''};
+    const page = {columns: new Columns(data.columns), marked: () => null, preferred: ''};
     const groups = Array.from(groupedBy(data.figures, 'id').values());
     const views = groups.map((alternatives) => new FigureView(alternatives, page));
     // The place keeps its height, so that nothing jumps while figures are exchanged.
