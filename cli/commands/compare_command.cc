@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/messages.h"
 #include "reports/comparison/comparison.h"
+#include "reports/page/compare_page.h"
+#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -18,6 +22,7 @@ Examples:
   simbench compare results/monday results/tuesday
   simbench compare results/monday --with-baseline ntp_last_set
   simbench compare results/monday --pipelines yoon2021_network,yoon2021_both --format json
+  simbench compare results/monday results/tuesday --html both.html
 
 Exit status: 0 ok, for any verdict (`simbench gate` judges), 1 internal error, 2 bad usage or
 input.)";
@@ -28,6 +33,8 @@ struct CompareOptions {
   std::string format;
   double smallest_effect_percent = 5;
   reports::ComparisonOptions comparison;
+  std::string html;
+  std::vector<std::string> command;
 };
 
 reports::Comparison compared(const CompareOptions& options) {
@@ -59,12 +66,19 @@ reports::Comparison compared(const CompareOptions& options) {
 }
 
 int compare(CompareOptions options) {
+  std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
+  if (!options.html.empty()) page.emplace(options.html);
   options.comparison.smallest_effect = options.smallest_effect_percent / 100;
   const reports::Comparison comparison = compared(options);
   print_result(options.format == "json" ? reports::comparison_json(comparison)
                : options.format == "csv"
                    ? reports::comparison_csv(comparison)
                    : reports::drawn_as(options.format, reports::comparison_document(comparison)));
+  if (page) {
+    page->write(reports::compare_html(comparison, options.command));
+    page->publish();
+    print_note(options.html + " written");
+  }
   return kOk;
 }
 
@@ -72,6 +86,7 @@ int compare(CompareOptions options) {
 
 void add_compare_command(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
+  options->command = line.arguments;
   Command command(line, "compare",
                   "Compare two result archives, or pipelines of one, seed by seed");
   command
@@ -91,6 +106,10 @@ void add_compare_command(CommandLine& line) {
   command.flag("--different-scenarios", options->comparison.different_scenarios,
                "Compare the same pipelines in worlds that differ");
   command.format(options->format, {"table", "markdown", "latex", "csv", "json"});
+  command.output(
+      "--html", "FILE.html", options->html,
+      "Write a page, too: the verdicts, A and B side by side, their differences seed by\n"
+      "seed. It is one file, which opens offline");
   command.footer(kCompareExamples);
   command.runs([options] { return compare(*options); });
 }

@@ -10,7 +10,7 @@ import re
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 from . import _simbench
-from .errors import Error, InputError, OutputError
+from .errors import Error, InputError
 from .progress import Progress
 from .results import Path, Result, _warn
 from .tables import notebook_html, page_columns
@@ -66,15 +66,6 @@ def repeated(name: str, values: Union[str, Path, Sequence[Any], None]) -> List[s
 def sets_of(sets: Optional[Mapping[str, Any]]) -> List[str]:
     """The values of --set."""
     return [f"{pointer}={json.dumps(value)}" for pointer, value in (sets or {}).items()]
-
-
-def write_text(path: Path, text: str) -> None:
-    """Writes a file. Raises OutputError."""
-    try:
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-    except OSError as error:
-        raise OutputError(f"{os.fspath(path)}: {error.strerror}") from error
 
 
 def words_of(**options: Any) -> List[str]:

@@ -10,11 +10,10 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 from .algorithms import Pipeline
 from .command import (
     Ended, Paths, archives_of, joined, paths_of, repeated, run_command, sets_of, words_of,
-    write_text,
 )  # fmt: skip
 from .errors import Error, InputError
 from .results import Path, Result, _whole, changes_of, use_python
-from .tables import records, table
+from .tables import records, table, write_text
 
 
 class Trace:

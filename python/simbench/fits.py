@@ -7,9 +7,9 @@ import os
 import tempfile
 from typing import Any, Dict, List, Optional, Sequence
 
-from .command import Ended, Output, Paths, joined, paths_of, run_command, words_of, write_text
+from .command import Ended, Output, Paths, joined, paths_of, run_command, words_of
 from .results import Path, _whole
-from .tables import records, table
+from .tables import records, table, write_text
 
 _FORMATS = ("table", "json", "fit_json")
 

@@ -13,7 +13,7 @@ from . import _simbench
 from .algorithms import Pipeline
 from .errors import InputError, OutputError
 from .progress import Progress
-from .tables import array, needed, notebook_html, page_text, records, table
+from .tables import array, needed, notebook_html, page_text, records, table, write_text
 
 Path = Union[str, "os.PathLike[str]"]
 _MOST_SEEDS = 1_000_000
@@ -263,8 +263,9 @@ class Result:
 class Comparison:
     """Two results, or pipelines of one, compared seed by seed: what `simbench compare` prints."""
 
-    def __init__(self, comparison: _simbench.Comparison) -> None:
+    def __init__(self, comparison: _simbench.Comparison, command: List[str]) -> None:
         self._comparison = comparison
+        self._command = command
 
     @property
     def table(self) -> Any:
@@ -275,6 +276,10 @@ class Comparison:
     def data(self) -> Dict[str, Any]:
         """All of it, as `simbench compare --format json` prints it."""
         return dict(json.loads(self._comparison.json()))
+
+    def save_html(self, path: Path) -> None:
+        """Writes the page of `simbench compare --html`."""
+        write_text(path, self._comparison.page(self._command))
 
     def __repr__(self) -> str:
         return page_text(self._comparison.text)
@@ -384,6 +389,7 @@ def compare(
     smallest_effect: float = 0.05,
     by_index: bool = False,
     different_scenarios: bool = False,
+    html: Optional[Path] = None,
     baseline: Optional[str] = None,
 ) -> Comparison:
     """Compares b with a, pipeline by pipeline; or, with a alone, every pipeline with `with_baseline`,
@@ -394,6 +400,7 @@ def compare(
         percent).
     by_index: pair the n-th seed of a with the n-th of b.
     different_scenarios: the worlds may differ.
+    html: a file for the page, as Comparison.save_html() writes it.
     baseline: another name of with_baseline.
     """
     with_baseline = with_baseline if with_baseline is not None else baseline
@@ -406,11 +413,27 @@ def compare(
         if with_baseline is not None:
             raise InputError("with_baseline: found two results, allowed: one, whose pipelines are compared")
         options.pipelines = names
-        return Comparison(_simbench.compare_runs(_as_run(a), _as_run(b), options))
-    if with_baseline is not None and not names:
-        return Comparison(_simbench.compare_baseline(_as_run(a), with_baseline, options))
-    if with_baseline is None and len(names) == 2:
-        return Comparison(_simbench.compare_two(_as_run(a), names[0], names[1], options))
-    raise InputError(
-        "found one result, allowed with it: either two pipelines or with_baseline; or a second result"
-    )
+        found = _simbench.compare_runs(_as_run(a), _as_run(b), options)
+    elif with_baseline is not None and not names:
+        found = _simbench.compare_baseline(_as_run(a), with_baseline, options)
+    elif with_baseline is None and len(names) == 2:
+        found = _simbench.compare_two(_as_run(a), names[0], names[1], options)
+    else:
+        raise InputError(
+            "found one result, allowed with it: either two pipelines or with_baseline; or a second result"
+        )
+    comparison = Comparison(found, _compare_command([a, b], with_baseline, names))
+    if html is not None:
+        comparison.save_html(html)
+    return comparison
+
+
+def _compare_command(
+    of: Sequence[Union[Result, Path, None]], with_baseline: Optional[str], pipelines: Sequence[str]
+) -> List[str]:
+    """The command that compares the same; RESULT stands for one that is in no file."""
+    named = ["RESULT" if isinstance(each, Result) else os.fspath(each) for each in of if each is not None]
+    words = ["simbench", "compare", *named]
+    if with_baseline is not None:
+        words += ["--with-baseline", with_baseline]
+    return words + (["--pipelines", ",".join(pipelines)] if pipelines else [])

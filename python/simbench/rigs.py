@@ -6,11 +6,11 @@ import json
 from typing import Any, Dict, List, Optional, Sequence, Union
 
 from . import _simbench
-from .command import Paths, paths_of, repeated, write_text
+from .command import Paths, paths_of, repeated
 from .errors import InputError
 from .progress import Progress
 from .results import Path, Result, _warn
-from .tables import array, notebook_html, page_text, paragraphs, table
+from .tables import array, notebook_html, page_text, paragraphs, table, write_text
 
 class Inspection:
     """What recordings have: what `simbench inspect` prints."""

@@ -6,10 +6,11 @@ import csv
 import html
 import importlib
 import io
-from typing import Any, Callable, Optional
+import os
+from typing import Any, Callable, Optional, Union
 
 from . import _simbench
-from .errors import MissingPackage
+from .errors import MissingPackage, OutputError
 
 #: Columns of words; all others are numbers.
 _WORDS = frozenset(
@@ -108,3 +109,12 @@ def page_text(text_of: Callable[[], str]) -> str:
     """What text_of() returns, for a terminal of this width."""
     _simbench.set_page_width(page_columns())
     return text_of().rstrip("\n")
+
+
+def write_text(path: Union[str, "os.PathLike[str]"], text: str) -> None:
+    """Writes a file. Raises OutputError."""
+    try:
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+    except OSError as error:
+        raise OutputError(f"{os.fspath(path)}: {error.strerror}") from error

@@ -24,6 +24,7 @@
 #include "python/src/work.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/comparison/comparison.h"
+#include "reports/page/compare_page.h"
 #include "reports/page/overview.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
@@ -388,9 +389,10 @@ void bind_comparison(const Object& module) {
            method("json", [](const Comparison& of) { return reports::comparison_json(of); }),
            method("text",
                   [](const Comparison& of) { return plain(reports::comparison_document(of)); }),
-           method("html", [](const Comparison& of) {
-             return html(reports::comparison_document(of).blocks);
-           })}});
+           method(
+               "html",
+               [](const Comparison& of) { return html(reports::comparison_document(of).blocks); }),
+           method("page", callable<&reports::compare_html>)}});
   add_functions(module, {function("compare_runs", callable<&compare_runs>),
                          function("compare_baseline", callable<&compare_baseline>),
                          function("compare_two", callable<&compare_two>)});

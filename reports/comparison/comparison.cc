@@ -67,25 +67,29 @@ void compare(const std::vector<RowPair>& rows, const SeedPairing& pairing,
   const auto judged = evaluation::judged_metrics(kind, all_rows);
   std::vector<evaluation::ComparisonTask> tasks;
   tasks.reserve(rows.size() * judged.size());
+  comparison.pipelines.reserve(rows.size());
   for (const RowPair& row : rows) {
+    std::vector<ComparedValues> values;
+    values.reserve(judged.size());
     for (const evaluation::Metric* metric : judged) {
-      tasks.push_back(
-          {.values = evaluation::pair_up(pairing.of_a(compared_values(*metric, *row.a)),
-                                         pairing.of_b(compared_values(*metric, *row.b))),
-           .rule = {.smallest_effect = options.smallest_effect,
-                    .smallest_step = metric->judged->smallest_step,
-                    .higher_is_better = metric->higher_is_better()}});
+      values.push_back({pairing.of_a(compared_values(*metric, *row.a)),
+                        pairing.of_b(compared_values(*metric, *row.b))});
+      tasks.push_back({.values = evaluation::pair_up(values.back().a, values.back().b),
+                       .rule = {.smallest_effect = options.smallest_effect,
+                                .smallest_step = metric->judged->smallest_step,
+                                .higher_is_better = metric->higher_is_better()}});
     }
+    comparison.pipelines.push_back({.pipeline_a = row.a->pipeline,
+                                    .pipeline_b = row.b->pipeline,
+                                    .values = std::move(values)});
   }
   note_failed(rows, comparison);
   const std::vector<evaluation::PairedComparison> all = evaluation::compare_together(tasks);
   comparison.judged = judged;
-  comparison.pipelines.reserve(rows.size());
   auto first = all.begin();
-  for (const RowPair& row : rows) {
+  for (ComparedPipeline& pipeline : comparison.pipelines) {
     const auto end = first + static_cast<std::ptrdiff_t>(judged.size());
-    comparison.pipelines.push_back(
-        {.pipeline_a = row.a->pipeline, .pipeline_b = row.b->pipeline, .metrics = {first, end}});
+    pipeline.metrics = {first, end};
     first = end;
   }
 }
@@ -95,6 +99,8 @@ Comparison prepared(const Archive& a, const Archive& b, const SeedPairing& pairi
   Comparison comparison;
   comparison.scenario = a.results.scenario;
   comparison.derivation = a.results.derivation;
+  comparison.archive_a = a.path;
+  comparison.archive_b = b.path;
   comparison.by_index = options.by_index;
   comparison.first_seed_a = a.results.first_seed + pairing.skip_a;
   comparison.first_seed_b = b.results.first_seed + pairing.skip_b;

@@ -41,10 +41,17 @@ struct ComparisonOptions {
   std::vector<std::string> pipelines{};  // of two archives; empty: all that both have
 };
 
+// The values of a metric, one of each pair of seeds; NaN where a seed has none.
+struct ComparedValues {
+  std::vector<double> a;
+  std::vector<double> b;
+};
+
 struct ComparedPipeline {
   std::string pipeline_a;
   std::string pipeline_b;
-  std::vector<evaluation::PairedComparison> metrics;  // by Comparison::judged
+  std::vector<evaluation::PairedComparison> metrics{};  // by Comparison::judged
+  std::vector<ComparedValues> values{};                 // behind these
 };
 
 struct Comparison {
@@ -53,6 +60,8 @@ struct Comparison {
   scenarios::Derivation derivation{};  // of A's scenario
   std::string a;  // in words: "monday (simbench 0.1.0, commit 1234567)", "pipeline ntp of monday"
   std::string b;
+  std::string archive_a;  // as they were named
+  std::string archive_b;
   bool by_index = false;
   std::uint64_t first_seed_a = 0;
   std::uint64_t first_seed_b = 0;
@@ -89,8 +98,13 @@ Comparison compare_pipelines(const Archive& archive, const std::string& a, const
 Comparison compare_with_baseline(const Archive& archive, const std::string& baseline,
                                  const ComparisonOptions& options);
 
+// What stands for a line of the comparison: its pipeline, or two of one archive, "b / a".
+std::string pair_name(const Comparison& comparison, const ComparedPipeline& pipeline);
+
 // In how many values B is better or worse, and which.
 AnswerText comparison_answer(const Comparison& comparison);
+// The scenario and its seeds, and what is changed of it: a paragraph each.
+std::vector<std::string> scenario_facts(const Comparison& comparison);
 // A line for each pipeline and metric, verdicts, notes; with a baseline also in words.
 Document comparison_document(const Comparison& comparison);
 // The texts of the document.

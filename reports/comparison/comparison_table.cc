@@ -141,9 +141,7 @@ Table comparison_table(const Comparison& comparison) {
                {.header = "B is", .align = Align::kLeft, .is_verdict = true}},
               2);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
-    const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
-                                 ? pipeline.pipeline_b
-                                 : fmt::format("{} / {}", pipeline.pipeline_b, pipeline.pipeline_a);
+    const std::string name = pair_name(comparison, pipeline);
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
       table.add(
           cells(name, *comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
@@ -251,6 +249,12 @@ std::string comparison_legend(const Comparison& comparison) {
 
 }  // namespace
 
+std::string pair_name(const Comparison& comparison, const ComparedPipeline& pipeline) {
+  return pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
+             ? pipeline.pipeline_b
+             : fmt::format("{} / {}", pipeline.pipeline_b, pipeline.pipeline_a);
+}
+
 AnswerText comparison_answer(const Comparison& comparison) {
   const std::size_t better = count_of(comparison, Verdict::kBetter);
   const std::size_t worse = count_of(comparison, Verdict::kWorse);
@@ -267,16 +271,21 @@ AnswerText comparison_answer(const Comparison& comparison) {
   return answer;
 }
 
-Document comparison_document(const Comparison& comparison) {
-  Document document{
-      .head = {fmt::format("A: {}", comparison.a), fmt::format("B: {}", comparison.b),
-               fmt::format("{}: {}", scenarios::named(comparison.scenario, comparison.derivation),
-                           pairing_text(comparison))}};
+std::vector<std::string> scenario_facts(const Comparison& comparison) {
+  std::vector<std::string> facts = {
+      fmt::format("{}: {}", scenarios::named(comparison.scenario, comparison.derivation),
+                  pairing_text(comparison))};
   if (!comparison.derivation.changes.empty()) {
-    document.head.push_back(scenarios::changed_text(comparison.derivation));
+    facts.push_back(scenarios::changed_text(comparison.derivation));
   }
-  const std::vector<std::string> answer = paragraphs(comparison_answer(comparison));
-  document.head.insert(document.head.begin(), answer.begin(), answer.end());
+  return facts;
+}
+
+Document comparison_document(const Comparison& comparison) {
+  Document document{.head = paragraphs(comparison_answer(comparison))};
+  document.head.push_back(fmt::format("A: {}", comparison.a));
+  document.head.push_back(fmt::format("B: {}", comparison.b));
+  for (std::string& fact : scenario_facts(comparison)) document.head.push_back(std::move(fact));
   document.blocks.push_back({.table = comparison_table(comparison)});
   if (comparison.with_baseline) document.blocks.push_back(words(comparison));
   if (std::vector<std::string> sure = verdicts_words(comparison); !sure.empty()) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure.h"
 #include "reports/text/number_text.h"
 
@@ -147,6 +148,30 @@ bool is_wide(const FigurePanel& panel) {
     }
   }
   return greatest > kLogSpan * least;
+}
+
+void choose_scale(FigurePanel& panel) {
+  panel.log_y = is_wide(panel);
+  if (!panel.log_y) return;
+  for (FigureSeries& series : panel.series) {
+    std::replace(series.y.begin(), series.y.end(), 0.0, evaluation::kNan);
+  }
+  std::erase_if(panel.series, [](const FigureSeries& series) {
+    return std::all_of(series.y.begin(), series.y.end(), [](double y) { return std::isnan(y); });
+  });
+}
+
+std::optional<FigureSeries> quantile_curve(std::vector<double> values, std::string label,
+                                           int colour) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  FigureSeries curve = series(std::move(label), Mark::kLine, colour);
+  if (values.size() == 1) values.push_back(values.front());  // all quantiles of a single seed
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    curve.add(100 * static_cast<double>(i) / static_cast<double>(values.size() - 1), values[i]);
+  }
+  return thinned(std::move(curve), kMostPoints);
 }
 
 FigureSeries series(std::string label, Mark mark, int colour) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,18 @@ bool is_wide(const FigurePanel& panel);
 // unknown.
 void add_span(std::string label, double from_ms, double to_ms, double panel_from_ms,
               FigurePanel& panel);
+
+// Makes the y axis of a wide panel logarithmic. Zeros are then gaps, and curves of zeros alone are
+// left out.
+void choose_scale(FigurePanel& panel);
+inline constexpr const char* kLogNote =
+    " Errors of exactly zero do not appear on logarithmic axes.";
+
+// The quantile function of a metric's values, as the tables have it
+// (evaluation/statistics/statistics.h): in ascending order over the share of seeds in percent.
+// Nothing if no value exists.
+std::optional<FigureSeries> quantile_curve(std::vector<double> values, std::string label,
+                                           int colour);
 
 // "host 1, camera 3"; "camera 3" where there is one host.
 std::string camera_label(const evaluation::RunDetail& run, std::size_t camera);

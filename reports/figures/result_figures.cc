@@ -83,21 +83,6 @@ const SeedScore* seed_of(const Row& row, std::uint64_t seed) {
   return found == row.seeds.end() ? nullptr : &*found;
 }
 
-// Makes the y axis of a wide panel logarithmic. Zeros are then gaps, and curves of zeros alone are
-// left out.
-void choose_scale(FigurePanel& panel) {
-  panel.log_y = is_wide(panel);
-  if (!panel.log_y) return;
-  for (FigureSeries& series : panel.series) {
-    std::replace(series.y.begin(), series.y.end(), 0.0, evaluation::kNan);
-  }
-  std::erase_if(panel.series, [](const FigureSeries& series) {
-    return std::all_of(series.y.begin(), series.y.end(), [](double y) { return std::isnan(y); });
-  });
-}
-
-constexpr const char* kLogNote = " Errors of exactly zero do not appear on logarithmic axes.";
-
 bool empty(const FigurePanel& panel) {
   return std::all_of(panel.series.begin(), panel.series.end(),
                      [](const FigureSeries& series) { return series.x.empty(); });
@@ -166,16 +151,8 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, const evaluation::Me
   FigurePanel made = panel(capitalised(metric.title), "share of seeds (%)",
                            fmt::format("{} ({})", metric.title, metric.unit));
   for (const RowRef& ref : rows) {
-    std::vector<double> values = metric.series(*ref.row).values;
-    std::erase_if(values, [](double value) { return std::isnan(value); });
-    if (values.empty()) continue;
-    std::sort(values.begin(), values.end());
-    FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
-    if (values.size() == 1) values.push_back(values.front());  // all quantiles of a single seed
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      curve.add(100 * static_cast<double>(i) / static_cast<double>(values.size() - 1), values[i]);
-    }
-    made.series.push_back(thinned(std::move(curve), kMostPoints));
+    auto curve = quantile_curve(metric.series(*ref.row).values, ref.row->pipeline, ref.colour);
+    if (curve) made.series.push_back(std::move(*curve));
   }
   choose_scale(made);
   if (metric.id == std::string_view("amd_ms")) add_published(rows, &Published::amd_ms, made);

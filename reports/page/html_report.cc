@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/page/html_page.h"
 #include "reports/page/overview.h"
+#include "reports/page/side_by_side.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
@@ -22,7 +23,6 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Row;
-using evaluation::Series;
 
 // A text member of the resolved scenario; "" if it or the scenario is missing.
 std::string scenario_text(const Archive& archive, const char* pointer) {
@@ -160,48 +160,6 @@ const char* subtitle_of(const ReportInput& input) {
                        : "how well do these clocks agree, and what limits it";
 }
 
-std::string cell_of(const Archive& archive, const std::string& pipeline, Series Row::*series) {
-  const Row* const row = evaluation::find_row(archive.results.rows, pipeline);
-  if (row == nullptr || std::isnan(((*row).*series).median)) return "-";
-  const Series& values = (*row).*series;
-  return fmt::format("{} {}{}", time_text(values.median), time_band_text(values.p05, values.p95),
-                     is_unverified(*row) ? " (unverified)" : "");
-}
-
-// The pipelines of all archives, in order.
-std::vector<std::string> pipelines_of(const std::vector<ReportedArchive>& archives) {
-  std::vector<std::string> pipelines;
-  for (const ReportedArchive& reported : archives) {
-    for (const Row& row : reported.archive.results.rows) {
-      if (std::find(pipelines.begin(), pipelines.end(), row.pipeline) == pipelines.end()) {
-        pipelines.push_back(row.pipeline);
-      }
-    }
-  }
-  return pipelines;
-}
-
-// Empty for a single archive.
-std::vector<Block> archive_blocks(const std::vector<ReportedArchive>& archives) {
-  if (archives.size() < 2) return {};
-  std::vector<Field<std::string>> fields = {
-      {{"pipeline", Align::kLeft}, [](const std::string& pipeline) { return pipeline; }}};
-  const auto add = [&fields](const Archive& archive, const char* what, Series Row::*series) {
-    fields.push_back({{fmt::format("{}: {}", archive.path, what)},
-                      [&archive, series](const std::string& pipeline) {
-                        return cell_of(archive, pipeline, series);
-                      }});
-  };
-  for (const ReportedArchive& reported : archives) {
-    add(reported.archive, "AMD", &Row::amd_ms);
-    add(reported.archive, "absolute error", &Row::absolute_error_ms);
-  }
-  return {{.heading = "The archives side by side",
-           .table = table_of(fields, pipelines_of(archives)),
-           .prose = {"Median over the seeds with the band from 5 to 95 %. simbench compare tests "
-                     "whether a difference is significant."}}};
-}
-
 }  // namespace
 
 std::string html_report(const ReportInput& input) {
@@ -212,7 +170,13 @@ std::string html_report(const ReportInput& input) {
     parts += html_article(input.front->article);
     data.push_back(figures_json(input.front->figures));
   } else {
-    parts += html(archive_blocks(input.archives));
+    SideBySide several = side_by_side(input.archives, input.command);
+    parts += several.above;
+    for (HtmlArticle& article : several.articles) {
+      article.number = data.size();
+      parts += html_article(article);
+      data.push_back(std::move(several.data[article.number]));
+    }
   }
   for (const ReportedArchive& reported : input.archives) {
     parts += html_article(article_of(reported, data.size(), input));

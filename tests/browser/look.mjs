@@ -162,6 +162,19 @@ export async function compares(page) {
   assert.equal(await table.locator('thead th').count(), 5);
 }
 
+// The comparison of the archives is what the page begins with; the archives follow.
+export async function beginsWithComparison(page) {
+  assert.match(await page.locator('h2:visible').innerText(), /^wednesday against monday$/);
+  assert.deepEqual(await visibleFigures(page), ['compared_distributions', 'paired_differences']);
+  await compares(page);
+  const names = await page.locator('#archive option').allInnerTexts();
+  assert.deepEqual(names, ['wednesday against monday', 'monday', 'wednesday']);
+}
+
+export async function saysWhyNotPaired(page) {
+  assert.match(await page.locator('main').innerText(), /Not compared seed by seed: .*none in common/);
+}
+
 export async function isHarmless(page) {
   await scrollThrough(page);
   assert.equal(await page.evaluate(() => window.broken), undefined);

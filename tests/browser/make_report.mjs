@@ -17,7 +17,7 @@ function recording() {
   return `${lines.join('\n')}\n`;
 }
 
-// The pages of other commands: {clocks, sweep, diagnose}.
+// The pages of other commands: {clocks, sweep, diagnose, compare}. The archive `monday` is there.
 export function makeOtherPages(simbench, folder) {
   const run = (...words) => execFileSync(simbench, words, {cwd: folder, stdio: 'pipe'});
   const file = (name) => path.join(folder, name);
@@ -27,10 +27,15 @@ export function makeOtherPages(simbench, folder) {
       '--set', '/timeline/frames=120', '--seeds', '4', '--output', 'jitter');
   writeFileSync(file('rig.csv'), recording());
   run('diagnose', 'rig.csv', '--html', 'diagnose.html');
-  return {clocks: file('clocks.html'), sweep: file('jitter/sweep.html'), diagnose: file('diagnose.html')};
+  run('compare', 'monday', '--with-baseline', 'ntp_last_set', '--html', 'compare.html');
+  return {
+    clocks: file('clocks.html'), sweep: file('jitter/sweep.html'), diagnose: file('diagnose.html'),
+    compare: file('compare.html'),
+  };
 }
 
-// {one, two, hostile}: files with one archive, with two, and with names that are markup.
+// {one, two, paired, hostile}: files with one archive, with two, with two of the same seeds, and with
+// names that are markup.
 export function makeReport(simbench, folder) {
   const run = (...words) => execFileSync(simbench, words, {cwd: folder, stdio: 'pipe'});
   const simulate = (name, ...more) => run(
@@ -42,6 +47,8 @@ export function makeReport(simbench, folder) {
   simulate('tuesday', '--first-seed', '11');
   run('report', 'monday', '-o', 'one.html', '--seeds-in-detail', '2', '--budget-seeds', '1');
   run('report', 'monday', 'tuesday', '-o', 'two.html', '--seeds-in-detail', '1', '--budget-seeds', '0');
+  simulate('wednesday', '--set', '/algorithms/yoon2021/stamps=50');
+  run('report', 'monday', 'wednesday', '-o', 'paired.html', '--seeds-in-detail', '1', '--budget-seeds', '0');
   const evil = '</script><script>window.broken = 1</script><img src=http://x/ onerror="window.broken=2">';
   const results = JSON.parse(readFileSync(file('monday/results.json'), 'utf8'));
   results.scenario = evil;
@@ -49,5 +56,7 @@ export function makeReport(simbench, folder) {
   results.rows[0].pipeline = evil;
   writeFileSync(file('hostile.json'), JSON.stringify(results));
   run('report', 'hostile.json', '-o', 'hostile.html');
-  return {one: file('one.html'), two: file('two.html'), hostile: file('hostile.html')};
+  return {
+    one: file('one.html'), two: file('two.html'), paired: file('paired.html'), hostile: file('hostile.html'),
+  };
 }

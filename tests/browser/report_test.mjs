@@ -166,7 +166,21 @@ async function checkPrint(file) {
 async function checkArchives(file) {
   await withPage(file, kShapes[0], '', async (page, test) => {
     await test('the archives are side by side in a table', () => look.compares(page));
+    await test('what has no seed in common is not compared', () => look.saysWhyNotPaired(page));
     await test('a switch shows the other archive', () => use.switchesArchive(page));
+  });
+}
+
+async function checkPaired(file) {
+  await withPage(file, kShapes[0], '', async (page, test) => {
+    await test('archives of the same seeds are compared', () => look.beginsWithComparison(page));
+    await look.scrollThrough(page);
+    for (const id of await look.visibleFigures(page)) {
+      await test(`${id} has data and drew it`, () => look.isDrawn(page, id));
+      await test(`the SVG of ${id} has what is shown`, () => files.svgMirrorsFigure(page, id));
+      await test(`the SVG of ${id} looks like it`, () => files.svgLooksLikeCanvas(page, id));
+    }
+    await test('the verdicts sort by value', () => tables.sortsByClick(page, 'Verdicts', 2));
   });
 }
 
@@ -177,7 +191,7 @@ async function checkWithoutScript(file) {
   await opened.context.close();
 }
 
-const {one, two, hostile} = makeReport(simbench, folder);
+const {one, two, paired, hostile} = makeReport(simbench, folder);
 for (const shape of kShapes) await checkLook(one, shape);
 for (const file of [one, ...Object.values(makeOtherPages(simbench, folder))]) {
   for (const shape of kAccessShapes) await checkAccess(file, shape);
@@ -189,6 +203,7 @@ await checkUse(one);
 await checkLink(one);
 await checkPrint(one);
 await checkArchives(two);
+await checkPaired(paired);
 await withPage(hostile, kShapes[0], '', async (page, test) => {
   await test('names with markup are text', () => look.isHarmless(page));
 });

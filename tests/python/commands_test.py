@@ -409,6 +409,13 @@ class RunsTest(CommandsTest):
         expected = command.simbench("compare", self.now, "--with-baseline", "oracle", "--json")
         self.assertEqual(found.data, json.loads(expected))
         self.assertEqual(simbench.compare(result, baseline="oracle").data, found.data)
+        page = self.path("compared.html")
+        simbench.compare(self.now, with_baseline="oracle", html=page)
+        theirs = self.path("theirs.html")
+        command.simbench("compare", self.now, "--with-baseline", "oracle", "--html", theirs)
+        mine = self.content(page)
+        self.assertIn(b"compared_distributions", mine)
+        self.assertEqual(mine, self.content(theirs).replace(f" --html {theirs}".encode(), b""))
         with self.assertRaisesRegex(simbench.InputError, "with_baseline: found two results"):
             simbench.compare(result, result, with_baseline="oracle")
 

@@ -70,6 +70,33 @@ TEST_F(Compare, TwoPipelinesInEveryFormat) {
   EXPECT_LT(Json::parse(formatted("json"))["pipelines"][0]["amd_ms"]["ratio"]["value"], 1);
 }
 
+// Beside what it prints; the same command gives the same bytes.
+TEST_F(Compare, APageOfTwoArchivesOfPipelinesAndOfABaseline) {
+  run_to("a");
+  run_to("b");
+  const std::vector<std::vector<std::string>> kinds = {
+      {"a", "b"}, {"a", "--pipelines", "ntp_last_set,oracle"}, {"a", "--with-baseline", "oracle"}};
+  for (const std::vector<std::string>& kind : kinds) {
+    std::vector<std::string> command = {"compare", "--html", "page.html"};
+    command.insert(command.end(), kind.begin(), kind.end());
+    const ProgramResult result = run(command);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("How to read it"));
+    EXPECT_THAT(result.err, HasSubstr("page.html written"));
+    const std::string page = content("page.html");
+    EXPECT_EQ(page.substr(0, 15), "<!doctype html>");
+    for (const char* part : {"<h3>Verdicts</h3>", "\"id\":\"compared_distributions\"",
+                             "\"id\":\"paired_differences\""}) {
+      EXPECT_NE(page.find(part), std::string::npos) << part;
+    }
+    EXPECT_EQ(run(command).status, 0);
+    EXPECT_EQ(content("page.html"), page);
+  }
+  const ProgramResult refused = run({"compare", "a", "b", "--html", "none/page.html"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.out, "");
+}
+
 TEST_F(Compare, SaysWhatDiffersAndWhatCanStillBeCompared) {
   run_to("a");
   run_to("slow", {"--set", "/network/latency_fixed_ms=5"});

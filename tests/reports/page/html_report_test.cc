@@ -209,7 +209,7 @@ TEST(HtmlReport, MarkupInNamesIsText) {
   EXPECT_FALSE(has(page, "<img"));
   // Each script ends once, and nothing ends one before.
   EXPECT_EQ(count(page, "</script>"), count(page, "<script"));
-  EXPECT_EQ(data_of(page)["figures"][0]["title"], evil);
+  EXPECT_EQ(data_of(page_of({archive}))["figures"][0]["title"], evil);
 }
 
 TEST(HtmlReport, SeveralArchivesAreComparedAndKeptApart) {
@@ -222,9 +222,36 @@ TEST(HtmlReport, SeveralArchivesAreComparedAndKeptApart) {
   EXPECT_TRUE(has(page,
                   "<td>2.00 ms [1.50, 2.50] ms</td><td>29.0 ms [28.0, 30.0] ms</td>"
                   "<td>4.00 ms [3.00, 5.00] ms</td>"));
-  EXPECT_EQ(count(page, "<article class=\"archive\""), 2U);
-  EXPECT_EQ(count(page, "class=\"data\">"), 2U);
+  // One article compares them seed by seed.
+  EXPECT_EQ(count(page, "<article class=\"archive\""), 3U);
+  EXPECT_EQ(count(page, "class=\"data\">"), 3U);
+  EXPECT_LT(page.find("<h2>results/tuesday against results/monday</h2>"),
+            page.find("The archives side by side"));
+  EXPECT_EQ(data_of(page)["figures"][0]["id"], "compared_distributions");
   EXPECT_FALSE(has(page_of({tuesday}), "The archives side by side"));
+}
+
+TEST(HtmlReport, ArchivesThatCannotBePairedSayWhy) {
+  ReportedArchive tuesday = monday_archive();
+  tuesday.archive.path = "results/tuesday";
+  tuesday.archive.results.first_seed = 100;
+  const std::string page = page_of({monday_archive(), tuesday});
+  EXPECT_EQ(count(page, "<article class=\"archive\""), 2U);
+  EXPECT_LT(page.find("The archives side by side"), page.find("<article"));
+  EXPECT_TRUE(has(page, "Not compared seed by seed: "));
+  EXPECT_TRUE(has(page, "none in common"));
+}
+
+TEST(HtmlReport, TheFirstOfThreeIsComparedWithTheOthers) {
+  ReportedArchive tuesday = monday_archive();
+  ReportedArchive wednesday = monday_archive();
+  tuesday.archive.path = "results/tuesday";
+  wednesday.archive.path = "results/wednesday";
+  tuesday.archive.results.first_seed = 100;
+  const std::string page = page_of({monday_archive(), tuesday, wednesday});
+  EXPECT_EQ(count(page, "<article class=\"archive\""), 4U);
+  EXPECT_TRUE(has(page, "<h2>results/wednesday against results/monday</h2>"));
+  EXPECT_TRUE(has(page, "Not compared seed by seed: "));
 }
 
 TEST(HtmlReport, WithoutAManifestItSaysWhatIsMissing) {

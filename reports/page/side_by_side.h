@@ -1,0 +1,28 @@
+// What a report of several archives begins with: their medians in one table, and the comparison of
+// the first with each other one, seed by seed (reports/page/compare_page.h).
+//
+// Archives that cannot be paired, of other worlds or without a common seed, are in the table alone,
+// and a paragraph has the reason.
+//
+//   const SideBySide parts = side_by_side({monday, tuesday}, {"simbench", "report", ...});
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/page/html_page.h"
+#include "reports/page/html_report.h"
+
+namespace simbench::reports {
+
+// Nothing of a single archive.
+struct SideBySide {
+  std::string above{};                  // HTML in front of all articles; of pairs the first has it
+  std::vector<HtmlArticle> articles{};  // one for each pair, without their numbers
+  std::vector<std::string> data{};      // figures_json() of each
+};
+
+SideBySide side_by_side(const std::vector<ReportedArchive>& archives,
+                        const std::vector<std::string>& command);
+
+}  // namespace simbench::reports
