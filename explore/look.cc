@@ -111,7 +111,7 @@ bool Look::make_step() {
       make_worlds();
       return stage_ != Stage::kEnd;
     case Stage::kPicture:
-      make_picture(std::min(kFirstSeeds, request_.seeds));
+      make_picture(request_.at_once ? request_.seeds : std::min(kFirstSeeds, request_.seeds));
       stage_ = request_.levers ? Stage::kLevers : Stage::kRun;
       return true;
     case Stage::kRun:

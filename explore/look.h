@@ -50,6 +50,7 @@ struct LookRequest {
   bool budget = false;
   bool levers = false;   // what would help; then there are neither figures nor further seeds
   std::string format{};  // "json", "csv" or "tidy": the results as a text, with or without levers
+  bool at_once = false;  // the first picture is of all seeds
 };
 
 // {"states": [...], "seeds", "pipeline", "figures": [ids], "budget", "levers", "format"}; all but

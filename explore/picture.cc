@@ -3,6 +3,8 @@
 #include "evaluation/answer/answer.h"
 #include "recording/collected.h"
 #include "reports/comparison/comparison.h"
+#include "reports/figures/comparison_figures.h"
+#include "reports/page/html_page.h"
 #include "reports/page/overview.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
@@ -47,7 +49,8 @@ Json comparison_of(const reports::Archive& a, const reports::Archive& b) {
   const reports::Comparison comparison =
       reports::compare_archives(a, b, {.different_scenarios = true});
   return {{"answer", reports::answer_json(reports::comparison_answer(comparison))},
-          {"tables", reports::html(reports::comparison_document(comparison).blocks)}};
+          {"tables", reports::html(reports::comparison_document(comparison).blocks)},
+          {"data", Json::parse(reports::figures_json(reports::comparison_figures(comparison)))}};
 }
 
 }  // namespace simbench::explore

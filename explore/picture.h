@@ -26,8 +26,8 @@ reports::Json picture_json(const evaluation::Results& results, const scenarios::
 reports::Archive archive_of(const evaluation::Results& results, const scenarios::Scenario& scenario,
                             const std::string& name);
 
-// The second against the first, seed by seed: {"answer": as above, "tables": HTML}. Throws
-// scenarios::InputError where they cannot be compared.
+// The second against the first, seed by seed: {"answer": as above, "tables": HTML, "data":
+// figures_json()}. Throws scenarios::InputError where they cannot be compared.
 reports::Json comparison_of(const reports::Archive& a, const reports::Archive& b);
 
 }  // namespace simbench::explore

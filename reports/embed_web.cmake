@@ -13,8 +13,8 @@ endfunction()
 set(figure_modules data axes overlay chart photographs downloads table_values print tables figure_view
              chart_svg figure_svg overview_svg figure_files)
 join_modules(script ${figure_modules} report)
-join_modules(explore_script ${figure_modules} scale states server parameters world_view
-             explore)
+join_modules(explore_script ${figure_modules} scale states server stored parameters
+             world_view explore)
 foreach(name report explore)
   file(READ ${FOLDER}/${name}.html ${name}_page)
   file(READ ${FOLDER}/${name}.css ${name}_style)

@@ -11,8 +11,10 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "evaluation/fit/fit.h"
+#include "explore/demo.h"
 #include "explore/explorer.h"
 #include "explore/subject.h"
+#include "reports/text/output_file.h"
 #include "scenarios/loader.h"
 #include "server/local_server.h"
 
@@ -34,6 +36,9 @@ Examples:
   simbench explore my_rig.json --port 8000
   simbench explore results/monday                  the world of an archive
   simbench explore front.bag back.bag              a rig that was recorded, fitted to it
+  simbench explore --export demo.html              one file to show others, without a server
+  simbench explore 3cam_1host_30fps --export tour.html --sweep /cameras/exposure_ms=2,8,20 \\
+    --sweep /usb/delivery_jitter_transfers=0:1:0.25
 
 Exit status: 0 ended by Ctrl-C, 1 internal error, 2 bad usage or input.)";
 
@@ -42,6 +47,8 @@ struct ExploreOptions {
   InputOptions reading;
   std::vector<std::string> sets;
   std::uint64_t port = 0;
+  std::string exported;
+  explore::DemoRequest demo;
 };
 
 // Nothing after Ctrl-C.
@@ -54,6 +61,23 @@ std::optional<explore::FoundSubject> found_subject(const ExploreOptions& options
       [&](const ReadProgress& progress) { return explore::subject_of(inputs, choice, progress); });
 }
 
+int export_demo(const ExploreOptions& options, const explore::PageSubject& subject) {
+  reports::OutputFile file(options.exported);
+  explore::DemoRequest request = options.demo;
+  if (request.axes.empty()) request.axes = explore::usual_axes();
+  const auto html = watched<std::string>(
+      [&](const evaluation::Progress& progress) {
+        return explore::demo_html(subject, request, progress);
+      },
+      {.unit = "world"});
+  if (!html) return kInterrupted;
+  file.write(*html);
+  file.publish();
+  print_note(fmt::format("{} written ({:.1f} MB)", options.exported,
+                         static_cast<double>(html->size()) / 1e6));
+  return kOk;
+}
+
 int explore_by_hand(const ExploreOptions& options) {
   std::optional<explore::FoundSubject> found;
   try {
@@ -63,6 +87,7 @@ int explore_by_hand(const ExploreOptions& options) {
   }
   if (!found) return kInterrupted;
   for (const std::string& note : found->notes) print_note(note);
+  if (!options.exported.empty()) return export_demo(options, found->subject);
   explore::Explorer explorer(std::move(found->subject));
   try {
     server::LocalServer server(
@@ -92,6 +117,14 @@ void add_explore_command(CommandLine& line) {
   add_input_options(command, options->reading);
   command.whole_number("--port", "PORT", options->port, 0, 65535,
                        "The port to listen on. Default: a free one");
+  command.output("--export", "FILE.html", options->exported,
+                 "Write one page that needs no server, in place of serving: a grid of worlds that "
+                 "are\ncomputed now, over the parameters of --sweep");
+  command.texts("--sweep", "/POINTER=VALUES", options->demo.axes,
+                "With --export: a parameter and its values, as `simbench sweep` takes them; one to "
+                "five\ntimes. Default: USB jitter, network latency and exposure");
+  command.whole_number("--seeds", "N", options->demo.seeds, 1, explore::kMostSeeds,
+                       "With --export: seeds of each world. Default: 16");
   command.footer(kExploreExamples);
   command.runs([options] { return explore_by_hand(*options); });
 }

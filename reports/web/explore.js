@@ -7,13 +7,14 @@ const kPatienceMs = 15000;  // without an event of a look that goes on, the serv
 const kRetryMs = 2000;
 
 const $ = (id) => document.getElementById(id);
-const server = new Server();
+const stored = $('stored');
+const server = stored ? new Stored(stored.textContent) : new Server();
 const parameters = new ParameterPanel($('groups'), $('search'),
                                       (pointer, value, initial) => states.set(pointer, value, initial));
 let subject = null, states = null, choices = null;
 let shownScenario = '';
 let views = [];
-let measuredViews = [];
+let measuredViews = [], comparisonViews = [];
 let look = null;  // {abort, lastEvent}
 
 function say(text) {
@@ -41,7 +42,7 @@ function makeViews() {
   views = names.map((name) => new WorldView(name));
   $('views').replaceChildren(...views.map(({root}) => root));
   $('views').classList.toggle('two', views.length === 2);
-  $('comparison').hidden = views.length < 2;
+  $('comparison').hidden = views.length < 2 || stored !== null;
 }
 
 function nameOf(index) {
@@ -50,10 +51,10 @@ function nameOf(index) {
 }
 
 const handlers = {
-  worlds({worlds}) {
+  worlds({worlds, state = 0}) {
     parameters.refuse('', '');
     showRefusal('');
-    worlds.forEach((world, i) => views[i].showWorld(nameOf(i), world));
+    worlds.forEach((world, i) => views[state + i].showWorld(nameOf(state + i), world));
   },
   refused({pointer, message, state}) {
     const isKept = views.length === 2 && state === 0;
@@ -62,14 +63,15 @@ const handlers = {
     }
     say('This world cannot be; what is shown is of the state before.');
   },
-  picture({seeds, elapsed_ms, views: shown, comparison}) {
+  picture({seeds, elapsed_ms, views: shown, comparison, state = 0}) {
     shown.forEach((view, i) => {
-      views[i].showPicture(view);
-      views[i].fade(false);
+      views[state + i].showPicture(view);
+      views[state + i].fade(false);
     });
     if (comparison) {
       $('comparison_answer').replaceChildren(answerElement(comparison.answer));
       showTables($('comparison_tables'), comparison.tables);
+      comparisonViews = showFigures($('comparison_figures'), comparison.data, states.view.pipeline);
     }
     showPipelines(shown[shown.length - 1]);
     say(`${seeds} seeds after ${Math.round(elapsed_ms)} ms; more follow.`);
@@ -304,19 +306,14 @@ async function showText(path, title) {
 function showMeasured({inputs, answer, trust, overview, tables, data}) {
   const root = $('measured');
   root.hidden = false;
-  const page = {columns: new Columns(data.columns), marked: () => null, preferred: ''};
-  const figures = data.figures.map((figure) => new FigureView([figure], page));
+  const figures = element('div', 'figures');
   const more = element('details', 'more');
   more.append(element('summary', '', 'All tables of the recording'), fragmentOf(tables));
   root.append(element('h2', '', `Measured: ${inputs.join(', ')}`), answerElement(answer),
               element('p', 'legend', `The model: ${trust}`), fragmentOf(overview),
-              ...figures.map((view) => view.root), more);
+              figures, more);
   makeTablesSortable(root);
-  for (const view of figures) {
-    view.draw();
-    addFigureFiles(view);
-  }
-  measuredViews = figures;
+  measuredViews = showFigures(figures, data, '');
 }
 
 function buildFigureChoice() {
@@ -335,6 +332,14 @@ function buildFigureChoice() {
     label.append(box, ` ${title}`);
     return label;
   }));
+}
+
+// What only a server can do is not offered without one.
+function hideServersPart() {
+  for (const id of ['help', 'file', 'python', 'json', 'csv', 'more']) $(id).hidden = true;
+  for (const id of ['scenario', 'first_seed', 'seeds']) $(id).parentElement.hidden = true;
+  for (const id of ['pipelines', 'figures']) $(id).closest('details').hidden = true;
+  document.querySelector('.search').hidden = true;
 }
 
 function listen() {
@@ -404,7 +409,7 @@ function pressed(event) {
 function showTheme(theme) {
   document.documentElement.dataset.theme = theme;
   $('theme').setAttribute('aria-pressed', String(theme === 'dark'));
-  for (const view of [...views, ...measuredViews]) view.redraw();
+  for (const view of [...views, ...measuredViews, ...comparisonViews]) view.redraw();
 }
 
 function listenToTheme() {
@@ -420,7 +425,7 @@ function followSize() {
   addEventListener('resize', () => {
     if (innerWidth === width || matchMedia('print').matches) return;
     width = innerWidth;
-    for (const view of [...views, ...measuredViews]) view.resize();
+    for (const view of [...views, ...measuredViews, ...comparisonViews]) view.resize();
   });
   addEventListener('beforeprint', () => views.forEach((view) => view.resize(kPrintWidth)));
   addEventListener('afterprint', () => views.forEach((view) => view.resize()));
@@ -443,6 +448,7 @@ async function begin() {
   if (!names.includes(subject.subject)) names.unshift(subject.subject);
   fillSelect($('scenario'), names.map((name) => [name, name]), states.now.scenario);
   buildFigureChoice();
+  if (stored) hideServersPart();
   listen();
   followSize();
   watchOverLook();

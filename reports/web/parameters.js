@@ -62,8 +62,8 @@ class ParameterRow {
   }
 
   build() {
-    const {type} = this.parameter;
-    if (type === 'number' || type === 'integer') return this.buildNumber();
+    const {type, steps} = this.parameter;
+    if (steps || type === 'number' || type === 'integer') return this.buildNumber();
     if (type === 'boolean') return this.buildSwitch();
     if (type === 'word') return this.buildWords();
     return this.buildText();
@@ -78,14 +78,16 @@ class ParameterRow {
 
   buildNumber() {
     const {parameter} = this;
-    this.scale = new SliderScale({...parameter, integer: parameter.type === 'integer'});
+    const {steps} = parameter;
+    this.scale = steps ? new StepScale(steps) :
+        new SliderScale({...parameter, integer: parameter.type === 'integer'});
     this.slider = element('input');
-    Object.assign(this.slider, {type: 'range', min: 0, max: kSliderSteps, step: 1});
+    Object.assign(this.slider, {type: 'range', min: 0, max: steps ? steps.length - 1 : kSliderSteps, step: 1});
     this.slider.setAttribute('aria-label', `${parameter.pointer}, slider`);
     this.slider.addEventListener('input', () => this.moved());
     this.controls.append(this.slider);
     this.field = this.prepare(element('input'));
-    Object.assign(this.field, {type: 'text', inputMode: 'decimal', autocomplete: 'off'});
+    Object.assign(this.field, {type: 'text', inputMode: 'decimal', autocomplete: 'off', readOnly: Boolean(steps)});
     this.field.addEventListener('change', () => this.typed());
     this.controls.append(element('span', 'unit', parameter.unit));
     this.read = () => this.field.value;
@@ -184,7 +186,8 @@ class ParameterPanel {
     this.groups = [];
     this.root.replaceChildren();
     const often = kOften.map((pointer) => parameters.find((each) => each.pointer === pointer)).filter(Boolean);
-    this.addGroup('Often changed', often, true);
+    if (parameters.every(({steps}) => steps)) return this.addGroup('Parameters', parameters, true);
+    this.addGroup('Often changed', often, !matchMedia('(max-width: 900px)').matches);
     const others = parameters.filter((each) => !often.includes(each));
     for (const [group, members] of groupedBy(others, 'group')) {
       this.addGroup(`${kGroups[group] ?? group} (${members.length})`, members, false);

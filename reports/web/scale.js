@@ -60,3 +60,16 @@ class SliderScale {
     return this.integer ? Math.round(value) : roundedTo(value, 3);
   }
 }
+
+// A slider over given values alone.
+class StepScale {
+  constructor(steps) {
+    this.steps = steps;
+  }
+  placeOf(value) {
+    return Math.max(0, this.steps.findIndex((step) => JSON.stringify(step) === JSON.stringify(value)));
+  }
+  valueAt(place) {
+    return this.steps[place];
+  }
+}

@@ -42,6 +42,19 @@ function showTables(root, html) {
   }
 }
 
+// Figures as data in place of what is there; returns their views.
+function showFigures(root, data, preferred) {
+  const page = {columns: new Columns(data.columns), marked: () => null, preferred};
+  const views = Array.from(groupedBy(data.figures, 'id').values(),
+                           (alternatives) => new FigureView(alternatives, page));
+  root.replaceChildren(...views.map((view) => view.root));
+  for (const view of views) {
+    view.draw();
+    addFigureFiles(view);
+  }
+  return views;
+}
+
 const kFigurePlaces = ['seeds', 'run', 'budget'];
 
 class WorldView {
@@ -92,22 +105,15 @@ class WorldView {
 
   showFigures({of, notes, data}) {
     const place = this.places[of];
-    const page = {columns: new Columns(data.columns), marked: () => null, preferred: ''};
-    const groups = Array.from(groupedBy(data.figures, 'id').values());
-    const views = groups.map((alternatives) => new FigureView(alternatives, page));
     // The place keeps its height, so that nothing jumps while figures are exchanged.
     place.style.minHeight = `${place.offsetHeight}px`;
-    place.replaceChildren(...views.map(({root}) => root),
-                          ...notes.map((text) => element('p', 'legend', text)));
-    for (const view of views) {
-      view.draw();
-      addFigureFiles(view);
-    }
+    const views = showFigures(place, data, '');
+    place.append(...notes.map((text) => element('p', 'legend', text)));
     place.style.minHeight = '';
     this.views = [...this.views.filter((view) => view.root.isConnected), ...views];
   }
 
-  // Of a state that is no more, nothing is left but what a later event replaces.
+  // What is shown of a state that is no more, until a later event replaces it.
   fade(isOld) {
     this.root.classList.toggle('old', isOld);
   }

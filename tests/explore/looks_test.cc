@@ -90,9 +90,9 @@ TEST(LookTest, AWorldThatCannotBeIsRefusedWithItsPlace) {
 // What a page saves is what the command prints, to the byte, but for the times that it took.
 TEST(LookTest, ResultsAreThoseOfTheCommand) {
   const auto without_times = [](const std::string& text) {
-    Json json = Json::parse(text);
-    json.erase("performance");
-    return json.dump();
+    Json results = Json::parse(text);
+    results.erase("performance");
+    return results.dump();
   };
   const scenarios::Scenario world =
       scenarios::load_scenario("3cam_1host_30fps", {{"/usb/delivery_jitter_transfers", "0.5"}});
