@@ -206,7 +206,17 @@ void Look::make_picture(std::uint64_t seeds) {
         {"elapsed_ms", elapsed.count()},
         {"views", std::move(shown)},
         {"comparison", std::move(comparison)}});
-  if (!request_.levers) make_figures("seeds", {kOverSeeds}, false);
+  if (!request_.levers) make_rest_of_picture();
+}
+
+void Look::make_rest_of_picture() {
+  make_figures("seeds", {kOverSeeds}, false);
+  if (request_.at_once) return;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    send({{"event", "tables"},
+          {"state", i},
+          {"tables", tables_html(*views_[i]->results, views_[i]->world)}});
+  }
 }
 
 void Look::make_figures(const char* of, const std::vector<std::string>& ids, bool budget) {

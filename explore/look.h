@@ -9,6 +9,7 @@
 //     comparison_of()}
 //   {"event": "figures", "state": 0, "of": "seeds", "run" or "budget", "pipeline", "notes", "data":
 //     figures_json()}
+//   {"event": "tables", "state": 0, "tables": HTML}, all of them
 //   {"event": "beside", "state": 0, ...: beside_json()}, of a rig that was measured
 //   {"event": "levers", "answer", "levers": [{"what", "pipeline", "sets", "from", "to"}]}
 //   {"event": "end", "seeds": 128, "why": ""}
@@ -50,7 +51,7 @@ struct LookRequest {
   bool budget = false;
   bool levers = false;   // what would help; then there are neither figures nor further seeds
   std::string format{};  // "json", "csv" or "tidy": the results as a text, with or without levers
-  bool at_once = false;  // the first picture is of all seeds
+  bool at_once = false;  // the first picture is of all seeds, and there are no tables
 };
 
 // {"states": [...], "seeds", "pipeline", "figures": [ids], "budget", "levers", "format"}; all but
@@ -76,6 +77,7 @@ class Look {
   bool make_step();
   void make_worlds();
   void make_picture(std::uint64_t seeds);
+  void make_rest_of_picture();
   void make_figures(const char* of, const std::vector<std::string>& ids, bool budget);
   void make_beside();
   void make_levers();

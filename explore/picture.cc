@@ -23,12 +23,6 @@ using scenarios::Scenario;
 Json picture_json(const Results& results, const Scenario& scenario,
                   const reports::ResultsAnswer& answer) {
   const Row* const best = evaluation::best_of(results);
-  std::vector<reports::Block> all = reports::results_document(results, "").blocks;
-  const bool is_board = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
-  if (is_board) {
-    const std::vector<reports::Block> boards = reports::board_blocks(results);
-    all.insert(all.begin(), boards.begin(), boards.end());
-  }
   return {{"scenario", scenarios::named(results.scenario, results.derivation)},
           {"summary", scenario.summary},
           {"answer", reports::answer_json(answer.text)},
@@ -36,8 +30,17 @@ Json picture_json(const Results& results, const Scenario& scenario,
           {"pipelines", collected(results.rows, &Row::pipeline)},
           {"overview", reports::overview_html(results)},
           {"table", reports::html(reports::summary_blocks(results, scenario.evaluation.table))},
-          {"tables", reports::html(all)},
           {"warnings", results.warnings}};
+}
+
+std::string tables_html(const Results& results, const Scenario& scenario) {
+  std::vector<reports::Block> all = reports::results_document(results, "").blocks;
+  const bool is_board = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
+  if (is_board) {
+    const std::vector<reports::Block> boards = reports::board_blocks(results);
+    all.insert(all.begin(), boards.begin(), boards.end());
+  }
+  return reports::html(all);
 }
 
 reports::Archive archive_of(const Results& results, const Scenario& scenario,

@@ -17,10 +17,13 @@
 namespace simbench::explore {
 
 // {"scenario": "18cam_6host_45fps (changed)", "summary", "answer": null or {"lead", "lines"},
-//  "best": a pipeline or null, "pipelines": those that have a row, "overview", "table", "tables":
-//  HTML, "warnings": [...]}
+//  "best": a pipeline or null, "pipelines": those that have a row, "overview", "table": HTML,
+//  "warnings": [...]}
 reports::Json picture_json(const evaluation::Results& results, const scenarios::Scenario& scenario,
                            const reports::ResultsAnswer& answer);
+
+// All tables of the results, as HTML.
+std::string tables_html(const evaluation::Results& results, const scenarios::Scenario& scenario);
 
 // The results as an archive, as figures and comparisons take it; `name`: what they call it.
 reports::Archive archive_of(const evaluation::Results& results, const scenarios::Scenario& scenario,

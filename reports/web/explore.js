@@ -81,6 +81,9 @@ const handlers = {
   figures(event) {
     views[event.state].showFigures(event);
   },
+  tables({state, tables}) {
+    views[state].showAllTables(tables);
+  },
   beside({state, table, text}) {
     views[state].showBeside(table ?? '', text ?? '');
   },

@@ -153,7 +153,7 @@ class ParameterRow {
     const isChanged = JSON.stringify(value) !== JSON.stringify(this.parameter.value);
     if (document.activeElement !== this.slider || !isChanged) this.write(value);
     this.root.classList.toggle('changed', isChanged);
-    this.reset.style.visibility = isChanged ? 'visible' : 'hidden';
+    this.reset.disabled = !isChanged;
   }
 
   refuse(message) {

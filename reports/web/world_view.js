@@ -73,6 +73,8 @@ class WorldView {
     this.more.append(element('summary', '', 'All tables'));
     this.tables = element('div');
     this.more.append(this.tables);
+    this.more.hidden = true;
+    this.more.addEventListener('toggle', () => this.showAllTables(this.allTables));
     this.root.append(this.head, this.world, this.warnings, this.answer, this.overview,
                      this.beside, this.table, this.places.run, this.places.budget, this.places.seeds,
                      this.more);
@@ -94,7 +96,13 @@ class WorldView {
     this.overview.replaceChildren(fragmentOf(view.overview));
     for (const overview of this.overview.querySelectorAll('.overview')) addOverviewFiles(overview);
     showTables(this.table, view.table);
-    showTables(this.tables, view.tables);
+  }
+
+  // All tables, once somebody wants them.
+  showAllTables(html) {
+    this.allTables = html;
+    this.more.hidden = false;
+    if (this.more.open) showTables(this.tables, html);
   }
 
   // A recording beside the simulation, or why it is not.

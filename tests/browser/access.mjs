@@ -85,6 +85,7 @@ export async function nothingIsCutOff(page) {
 }
 
 const kReachable = '#sections button, #controls button, #controls select, #controls input, ' +
+    '#bar button, #bar select, #bar input, aside input, aside select, aside button, ' +
     '.figure-tools button, .figure-tools select, .table-tools button, .sort, .chart, summary, .scroll[tabindex]';
 
 // Tab goes through everything that can be used, and what has the focus has an outline.
@@ -93,7 +94,7 @@ export async function keyboardReachesAll(page) {
     scrollTo(0, 0);
     document.activeElement.blur();
     for (const element of document.querySelectorAll(selector)) {
-      if (element.checkVisibility()) element.dataset.unreached = '';
+      if (element.checkVisibility() && !element.disabled) element.dataset.unreached = '';
     }
   }, kReachable);
   const unseen = [];

@@ -61,7 +61,7 @@ async function pixelsWithoutSeries(panel) {
 
 export async function controlsAreNamed(page) {
   const nameless = await page.locator('button, select, input').evaluateAll((all) => all.filter(
-      (one) => !(one.getAttribute('aria-label') || one.innerText || one.labels?.length)).length);
+      (one) => !(one.getAttribute('aria-label') || one.textContent || one.labels?.length)).length);
   assert.equal(nameless, 0);
   const charts = await page.locator('.chart').evaluateAll((all) => all.filter(
       (one) => !one.getAttribute('aria-label') || one.tabIndex !== 0).length);

@@ -55,14 +55,15 @@ TEST(LookTest, FirstTheAnswerOfFewSeedsThenTheFiguresThenMoreSeeds) {
   EXPECT_TRUE(stream->has_ended());
   const std::vector<json> events = stream->events();
   EXPECT_THAT(outline(events),
-              ElementsAre("worlds", "picture 8", "figures seeds", "figures run", "figures budget",
-                          "picture 16", "figures seeds", "picture 20", "figures seeds", "end 20"));
+              ElementsAre("worlds", "picture 8", "figures seeds", "tables", "figures run",
+                          "figures budget", "picture 16", "figures seeds", "tables", "picture 20",
+                          "figures seeds", "tables", "end 20"));
   EXPECT_THAT(events[0]["worlds"][0]["world"].get<std::string>(), HasSubstr("Cameras: 3"));
   EXPECT_FALSE(events[1]["views"][0]["answer"]["lead"].get<std::string>().empty());
   EXPECT_THAT(events[1]["views"][0]["overview"].get<std::string>(),
               HasSubstr("class=\"overview\""));
   EXPECT_TRUE(events[1]["comparison"].is_null());
-  EXPECT_THAT(events[3]["data"]["figures"], SizeIs(2));
+  EXPECT_THAT(events[4]["data"]["figures"], SizeIs(2));
 }
 
 TEST(LookTest, TwoStatesAreComparedSeedBySeed) {
