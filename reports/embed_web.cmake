@@ -15,7 +15,8 @@ set(figure_modules data axes overlay chart photographs downloads table_values pr
 join_modules(script ${figure_modules} report)
 join_modules(explore_script ${figure_modules} scale states server stored parameters
              world_view explore)
-foreach(name report explore)
+join_modules(watch_script ${figure_modules} history watch)
+foreach(name report explore watch)
   file(READ ${FOLDER}/${name}.html ${name}_page)
   file(READ ${FOLDER}/${name}.css ${name}_style)
 endforeach()
@@ -34,6 +35,9 @@ std::string_view script() { return R"embedded(@script@)embedded"; }
 std::string_view explore_page() { return R"embedded(@explore_page@)embedded"; }
 std::string_view explore_style() { return R"embedded(@explore_style@)embedded"; }
 std::string_view explore_script() { return R"embedded(@explore_script@)embedded"; }
+std::string_view watch_page() { return R"embedded(@watch_page@)embedded"; }
+std::string_view watch_style() { return R"embedded(@watch_style@)embedded"; }
+std::string_view watch_script() { return R"embedded(@watch_script@)embedded"; }
 std::string_view uplot_script() { return R"embedded(@uplot_script@)embedded"; }
 std::string_view uplot_style() { return R"embedded(@uplot_style@)embedded"; }
 std::string_view uplot_licence() { return R"embedded(@uplot_licence@)embedded"; }

@@ -15,6 +15,11 @@ std::string_view explore_page();
 std::string_view explore_style();
 std::string_view explore_script();
 
+// What a page that is watched has.
+std::string_view watch_page();
+std::string_view watch_style();
+std::string_view watch_script();
+
 std::string_view uplot_script();
 std::string_view uplot_style();
 std::string_view uplot_licence();

@@ -1,0 +1,13 @@
+// The page of `simbench watch`, complete in itself; it asks its server for the snapshot of a
+// monitor (watch/monitor.h) once a second.
+//
+//   response.body = watch_html();
+#pragma once
+
+#include <string>
+
+namespace simbench::reports {
+
+std::string watch_html();
+
+}  // namespace simbench::reports
