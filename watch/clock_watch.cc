@@ -81,6 +81,9 @@ void ClockWatch::look_for_step() {
   const double jump = error(1) - error(2) - usual;
   const double after = error(0) - error(1) - usual;
   if (!(std::abs(jump) > evaluation::kStepFactor * scatter) || jump == 0) return;
+  // An outlier that goes is none, and neither is its going.
+  const double before_it = error(2) - error(3) - usual;
+  if (std::abs(jump + before_it) < std::abs(jump) / 2) return;
   const double stays = jump + after;  // what the next one leaves of it
   if (std::abs(stays) < std::abs(jump) / 2 || stays * jump < 0) return;
   ++steps_;

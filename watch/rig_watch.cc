@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/text/time_text.h"
@@ -39,8 +40,21 @@ auto first_from(const std::deque<StampedFrame>& frames, double from_s) {
       frames, from_s, {}, [](const StampedFrame& frame) { return seconds_of(frame.arrival); });
 }
 
+// Where most of the values are on a circle of a period.
+double circular_mean(const std::vector<double>& values, double period_ms) {
+  double sine = 0;
+  double cosine = 0;
+  for (const double value : values) {
+    const double angle = 2 * std::numbers::pi * value / period_ms;
+    sine += std::sin(angle);
+    cosine += std::cos(angle);
+  }
+  return std::atan2(sine, cosine) * period_ms / (2 * std::numbers::pi);
+}
+
 // The median distance of a camera's arrivals of a stretch to the nearest of the reference's; NaN:
-// too few. Distances are taken about the first, so that the median is of one branch.
+// too few. The median is about their circular mean, since a
+// period more is the same phase.
 double phase_in(const std::deque<StampedFrame>& frames, const std::deque<StampedFrame>& reference,
                 double period_ms, double from_s, double to_s) {
   std::vector<double> distances;
@@ -55,14 +69,12 @@ double phase_in(const std::deque<StampedFrame>& frames, const std::deque<Stamped
       ++near;
     }
     if (near == reference.end()) break;
-    const double distance = wrapped_ms(distance_ms(near), period_ms);
-    distances.push_back(distances.empty()
-                            ? distance
-                            : distances.front() +
-                                  wrapped_ms(distance - distances.front(), period_ms));
+    distances.push_back(distance_ms(near));
   }
   if (distances.size() < kFewestFrames) return evaluation::kNan;
-  return wrapped_ms(median_of(std::move(distances)), period_ms);
+  const double middle = circular_mean(distances, period_ms);
+  for (double& distance : distances) distance = wrapped_ms(distance - middle, period_ms);
+  return wrapped_ms(middle + median_of(std::move(distances)), period_ms);
 }
 
 std::string subject_of(const WatchedCamera& camera) {

@@ -99,7 +99,7 @@ class WatchView {
 
   void show(const Monitor& monitor, const std::vector<WatchEvent>& events) {
     if (draws_) {
-      print_result("\x1b[H\x1b[J" + watch_text(monitor.snapshot()));
+      print_result("\x1b[H\x1b[J" + watch::watch_text(monitor.snapshot()));
       return;
     }
     for (const WatchEvent& event : events) {
