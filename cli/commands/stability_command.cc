@@ -13,7 +13,9 @@
 #include "recording/date_time.h"
 #include "recording/number_in.h"
 #include "reports/figures/stability_figure.h"
+#include "reports/page/stability_page.h"
 #include "reports/stability/stability_report.h"
+#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -36,6 +38,7 @@ Examples:
   simbench stability errors.csv --unit ns --format json > stability.json
   simbench stability phase.txt --tau0 1 --remove-frequency
   simbench stability ptp4l.txt --mask class_b --figure ptp4l.svg
+  simbench stability ptp4l.txt --mask class_b --html ptp4l.html
   simbench stability errors.csv --limit max_te=100ns,mtie@10s=50ns,adev@1s=1e-9,p99=80ns
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 3 a limit is not kept.)";
@@ -51,6 +54,8 @@ struct StabilityOptions {
   std::string mask;
   std::vector<std::string> limits;
   std::string figure;
+  std::string html;
+  std::vector<std::string> command;
   evaluation::LogStabilityOptions stability;
 };
 
@@ -111,6 +116,8 @@ bool keeps_limits(const reports::StabilityFinding& finding) {
 
 int run_stability(const StabilityOptions& options) {
   const FigureFile figure(options.figure);
+  std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
+  if (!options.html.empty()) page.emplace(options.html);
   const std::vector<evaluation::ClockMask> masks = masks_of(options);
   std::vector<reports::StabilityFinding> found;
   for (const std::string& file : options.files) {
@@ -135,6 +142,12 @@ int run_stability(const StabilityOptions& options) {
            : format == "csv" ? reports::stability_csv(found)
                              : reports::drawn_as(format, reports::stability_document(found));
   });
+  if (page) {
+    page->write(
+        reports::stability_html({.findings = found, .masks = masks, .command = options.command}));
+    page->publish();
+    print_note(options.html + " written");
+  }
   // Last: without gnuplot the results are there all the same.
   if (figure) {
     figure.draw(reports::stability_figure(found, masks));
@@ -147,6 +160,7 @@ int run_stability(const StabilityOptions& options) {
 
 void add_stability_command(CommandLine& line) {
   auto options = std::make_shared<StabilityOptions>();
+  options->command = line.arguments;
   Command command(line, "stability",
                   "How stable a measured clock is: ADEV, TDEV, MTIE, time error");
   command.texts("files", "FILE...", options->files, "Logs of clocks, one clock each").required();
@@ -186,6 +200,10 @@ void add_stability_command(CommandLine& line) {
   command.output("--figure", "FILE", options->figure,
                  "Draw ADEV, TDEV and MTIE with their intervals and limits to this file (.svg or\n"
                  ".pdf, by gnuplot)");
+  command.output(
+      "--html", "FILE.html", options->html,
+      "Write a page, too: the verdict, the time error, ADEV, TDEV and MTIE, the tables.\n"
+      "It is one file, which opens offline");
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.footer(kStabilityExamples);
   command.runs(

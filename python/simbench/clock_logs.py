@@ -100,6 +100,7 @@ def stability(
     mask: Optional[str] = None,
     limit: Sequence[str] = (),
     figure: Optional[Path] = None,
+    html: Optional[Path] = None,
 ) -> Stability:
     """Says how stable measured clocks are, of logs of ptp4l, chrony, ntpd and others, and of tables.
 
@@ -114,13 +115,14 @@ def stability(
     remove_frequency: remove the frequency offset before anything else.
     mask: limits of ITU-T ("class_b", "prtc_a", ...); limit: your own, ["max_te=100ns",
         "mtie@10s=50ns", "adev@1s=1e-9"]. A limit that is broken is no exception: Stability.passed.
-    figure: a .svg or .pdf file to draw ADEV, TDEV and MTIE to, by gnuplot.
+    figure: a .svg or .pdf file to draw ADEV, TDEV and MTIE to, by gnuplot. html: a file for the page
+        with these and the time error.
     """
     options = words_of(
         **_reading(unit, time_unit), series=series, interval_s=interval_s,
         frequencies=bool(frequencies), locked=bool(locked), from_=from_, until=until,
         settle=bool(settle), remove_frequency=bool(remove_frequency), mask=mask,
-        limit=joined("limit", limit), figure=figure,
+        limit=joined("limit", limit), figure=figure, html=html,
     )  # fmt: skip
     return Stability(run_command("stability", options, paths_of("files", files),
                                  formats=Stability.formats))

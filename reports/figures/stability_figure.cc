@@ -1,21 +1,30 @@
 #include "reports/figures/stability_figure.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <utility>
 
+#include "evaluation/statistics/statistics.h"
 #include "recording/counted.h"
+#include "reports/figures/figure_parts.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
 
 // A power of tau is straight on these axes; a sum is not.
 constexpr int kStepsOfACurvedLimit = 20;
+constexpr std::size_t kMostPointsOfAClock = 4000;
+constexpr std::size_t kMostSteps = 8;  // more cannot be told apart
 
 FigureSeries clock_line(const StabilityFinding& finding, const evaluation::ClockCurve& curve,
                         int colour) {
   const bool has_interval = curve.deviation != evaluation::Deviation::kMtie;
-  FigureSeries series{.label = finding.log.file, .mark = Mark::kMarkedLine, .colour = colour};
+  FigureSeries series{.label = log_name(finding.log), .mark = Mark::kMarkedLine, .colour = colour};
   for (const evaluation::StabilityPoint& point : finding.log.stability.*curve.points) {
     if (point.value <= 0) continue;  // a logarithmic axis has no place for it
     if (!has_interval) {
@@ -51,6 +60,59 @@ double first_tau(const std::vector<StabilityFinding>& findings) {
   return first_s;
 }
 
+// The points of a clock in the unit that fits, with a gap between its pieces.
+FigureSeries time_error_line(const evaluation::Stability& stability, const ShownUnit& unit) {
+  FigureSeries line = series("time error", Mark::kLine, 0);
+  const double per_s = 1e3 * unit.per_ms;
+  for (const evaluation::TimeErrorPiece& piece : stability.series.pieces) {
+    if (!line.x.empty()) line.add(piece.start_s - stability.interval_s / 2, evaluation::kNan);
+    double at_s = piece.start_s;
+    for (const double x_s : piece.x_s) {
+      line.add(at_s, per_s * x_s);
+      at_s += stability.interval_s;
+    }
+  }
+  return thinned(std::move(line), kMostPointsOfAClock);
+}
+
+void add_largest_limits(const std::vector<evaluation::ClockMask>& masks, const ShownUnit& unit,
+                        FigurePanel& panel) {
+  for (const evaluation::ClockMask& mask : masks) {
+    for (const evaluation::MaskLimit& limit : mask.limits) {
+      const bool is_of_it = limit.quantity == evaluation::LimitedQuantity::kMaxTe &&
+                            limit.band == evaluation::Band::kAll;
+      if (!is_of_it) continue;
+      const double at = unit.per_ms * limit.segments.front().base;
+      for (const double side : {at, -at}) {
+        panel.lines.push_back({.label = mask.title + " " + limit.label, .at = side});
+      }
+    }
+  }
+}
+
+std::vector<evaluation::TimeErrorStep> largest_steps(const evaluation::Stability& stability) {
+  std::vector<evaluation::TimeErrorStep> steps = stability.steps;
+  std::ranges::stable_sort(steps, std::greater<>(),
+                           [](const auto& step) { return std::abs(step.step_s); });
+  steps.resize(std::min(steps.size(), kMostSteps));
+  return steps;
+}
+
+FigurePanel time_error_panel(const StabilityFinding& finding,
+                             const std::vector<evaluation::ClockMask>& masks) {
+  const evaluation::Stability& stability = finding.log.stability;
+  const ShownUnit& unit = time_unit_of(stability.time_error.max_te_ms);
+  FigurePanel made = panel(log_name(finding.log), "time since the first point (s)",
+                           fmt::format("time error ({})", unit.name));
+  made.series.push_back(time_error_line(stability, unit));
+  for (const evaluation::TimeErrorStep& step : largest_steps(stability)) {
+    made.lines.push_back(
+        {.label = "step of " + time_text(1e3 * step.step_s), .vertical = true, .at = step.at_s});
+  }
+  add_largest_limits(masks, unit, made);
+  return made;
+}
+
 }  // namespace
 
 FigureSeries limit_line(const evaluation::MaskLimit& limit, std::string label, int colour,
@@ -78,7 +140,7 @@ Figure stability_figure(const std::vector<StabilityFinding>& findings,
   figure.id = "stability";
   figure.title = "stability of " + counted(findings.size(), "measured clock");
   figure.caption =
-      "Shaded: 95 % confidence intervals under the power-law noise at each tau; MTIE has none. The "
+      "With 95 % confidence intervals under the power-law noise at each tau; MTIE has none. The "
       "curves are not filtered; limits of dTE_L are of the time error below 0.1 Hz.";
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
     if (!curve.in_text) continue;
@@ -90,6 +152,25 @@ Figure stability_figure(const std::vector<StabilityFinding>& findings,
     add_limits(masks, curve, first_tau(findings), panel);
     figure.panels.push_back(std::move(panel));
   }
+  return figure;
+}
+
+Figure time_error_figure(const std::vector<StabilityFinding>& findings,
+                         const std::vector<evaluation::ClockMask>& masks) {
+  Figure figure;
+  figure.id = "time_error";
+  figure.title = "time error of " + counted(findings.size(), "measured clock");
+  for (const StabilityFinding& finding : findings) {
+    if (finding.log.stability.series.pieces.empty()) continue;
+    figure.panels.push_back(time_error_panel(finding, masks));
+  }
+  if (figure.panels.empty()) {
+    return absent(std::move(figure), "Summaries (rms, max) have no points to draw.");
+  }
+  figure.caption =
+      "The clock minus its reference, at the points that the deviations are of; a gap is a gap of "
+      "the log; dashed are the largest steps and limits. Long logs are thinned without hiding an "
+      "extreme.";
   return figure;
 }
 

@@ -76,10 +76,6 @@ bool has_size(const LogStability& file, const Size& size) {
 
 double seconds_of(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
 
-std::string name_of(const LogStability& file) {
-  return file.series.empty() ? file.file : fmt::format("{} {}", file.file, file.series);
-}
-
 std::string offset_text(const LogStability& file) {
   return file.frequency_offset ? fmt::format("{:.6g}", 1e9 * *file.frequency_offset) : "-";
 }
@@ -124,7 +120,7 @@ Table files_table(const std::vector<StabilityFinding>& findings) {
   for (const StabilityFinding& finding : findings) {
     const LogStability& file = finding.log;
     const Stability& stability = file.stability;
-    std::vector<std::string> cells = {name_of(file),
+    std::vector<std::string> cells = {log_name(file),
                                       file.format,
                                       count_text(file.samples),
                                       fmt::format("{:.6g}", stability.interval_s),
@@ -326,6 +322,10 @@ void add_stability(Json& object, const Stability& stability) {
   }
 }
 
+std::string log_name(const LogStability& file) {
+  return file.series.empty() ? file.file : fmt::format("{} {}", file.file, file.series);
+}
+
 AnswerText stability_answer(const std::vector<StabilityFinding>& findings) {
   if (findings.empty()) return {};
   const auto largest_te = [](const StabilityFinding& finding) {
@@ -334,10 +334,10 @@ AnswerText stability_answer(const std::vector<StabilityFinding>& findings) {
   const LogStability& worst = std::ranges::max_element(findings, {}, largest_te)->log;
   const evaluation::TimeErrorSummary& size = worst.stability.time_error;
   AnswerText answer{.lead = findings.size() == 1
-                                ? fmt::format("The largest time error of {} is {}.", name_of(worst),
-                                              time_text(size.max_te_ms))
+                                ? fmt::format("The largest time error of {} is {}.",
+                                              log_name(worst), time_text(size.max_te_ms))
                                 : fmt::format("Of {}, {} has the largest time error: {}.",
-                                              counted(findings.size(), "clock"), name_of(worst),
+                                              counted(findings.size(), "clock"), log_name(worst),
                                               time_text(size.max_te_ms))};
   answer.add("Limits", limits_text(findings));
   answer.add("Parts",
@@ -347,9 +347,9 @@ AnswerText stability_answer(const std::vector<StabilityFinding>& findings) {
                                time_text(size.constant_te_ms), time_text(size.dynamic_te_ms)));
   for (const StabilityFinding& finding : findings) {
     if (!finding.log.start) continue;
-    answer.add("Start", findings.size() == 1
-                            ? start_text(finding.log)
-                            : fmt::format("{}: {}", name_of(finding.log), start_text(finding.log)));
+    answer.add("Start", findings.size() == 1 ? start_text(finding.log)
+                                             : fmt::format("{}: {}", log_name(finding.log),
+                                                           start_text(finding.log)));
   }
   std::int64_t steps = 0;
   std::int64_t gaps = 0;
@@ -371,7 +371,7 @@ Document stability_document(const std::vector<StabilityFinding>& findings) {
   document.blocks.push_back({.heading = "Time error (TE)", .table = files_table(findings)});
   for (const StabilityFinding& finding : findings) {
     const Stability& stability = finding.log.stability;
-    Block block{.heading = name_of(finding.log)};
+    Block block{.heading = log_name(finding.log)};
     if (!stability.mtie_ms.empty()) block.table = stability_table(stability);
     if (!finding.log.are_summaries) block.prose = {percentiles_text(stability.time_error)};
     for (const MaskVerdict& verdict : finding.verdicts) {
@@ -399,7 +399,7 @@ std::string stability_csv(const std::vector<StabilityFinding>& findings) {
   std::string text = "file,format,quantity,tau_s,value,terms,low,high,noise,reliable\n";
   for (const StabilityFinding& finding : findings) {
     const LogStability& file = finding.log;
-    const std::string head = csv_cell(name_of(file)) + "," + file.format + ",";
+    const std::string head = csv_cell(log_name(file)) + "," + file.format + ",";
     const auto add = [&](const char* quantity, double value) {
       text += fmt::format("{}{},,{},,,,,\n", head, quantity, csv_cell(value));
     };

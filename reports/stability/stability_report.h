@@ -54,6 +54,9 @@ struct StabilityFinding {
   std::vector<evaluation::MaskVerdict> verdicts{};
 };
 
+// "tracking.log"; of a file that has several series with the name of the one.
+std::string log_name(const evaluation::LogStability& log);
+
 // The verdicts, the largest time error of the files, its parts, and what breaks them.
 AnswerText stability_answer(const std::vector<StabilityFinding>& findings);
 // The answer, a section for all files, and one for each.

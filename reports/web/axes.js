@@ -75,13 +75,15 @@ function xRange(panel) {
 }
 
 function isZoomed(chart) {
-  const x = chart.data[0];
-  return x.length > 0 && (chart.scales.x.min > x[0] || chart.scales.x.max < x[x.length - 1]);
+  const x = chart.data[0], {min, max} = chart.scales.x;
+  return x.length > 0 && min != null && (min > x[0] || max < x[x.length - 1]);
 }
 
+// uPlot asks for it before the new range of x holds: followZoom() of chart.js asks again.
 function yRange(panel) {
   return (chart, min, max) => {
-    const lines = isZoomed(chart) ? [] : panel.lines.filter(({vertical}) => !vertical);
+    chart.yIsOfZoom = isZoomed(chart);
+    const lines = chart.yIsOfZoom ? [] : panel.lines.filter(({vertical}) => !vertical);
     const floor = barSeries(panel).length && !panel.log_y ? [0] : [];
     const [low, high] = extent([min, max, ...floor], lines);
     if (panel.log_y) return uPlot.rangeLog(Math.max(low, 1e-12), Math.max(high, 1e-12), 10, false);

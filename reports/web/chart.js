@@ -95,6 +95,13 @@ function colourEntries(chart, panel) {
   });
 }
 
+// Lines across are in sight unless the reader has zoomed. uPlot forgets what is asked of it here.
+function followZoom(chart, scale) {
+  if (scale !== 'x' || isZoomed(chart) === chart.yIsOfZoom) return;
+  const {min, max} = chart.scales.x;
+  queueMicrotask(() => chart.setScale('x', {min, max}));
+}
+
 // `marked()`: the pulse to mark, or null.
 function makeChart(host, panel, columns, marked) {
   const data = alignedData(panel, columns);
@@ -127,6 +134,7 @@ function makeChart(host, panel, columns, marked) {
         (chart) => drawNotes(chart, () => drawAbove(chart, panel, marked())),
         (chart) => colourEntries(chart, panel),
       ],
+      setScale: [followZoom],
       setSeries: [(chart, number, {show}) => showAlike(chart, number, show)],
       ready: [makeLegendReachable, hideRepeatedEntries],
     },

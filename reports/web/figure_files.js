@@ -21,11 +21,12 @@ async function pngFile(svg) {
   return new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
 }
 
-// Buttons that save the figure which `svg()` makes under the name that `name(ending)` gives it.
+// Buttons that save the figure which `svg()` makes, now or later, under the name that `name(ending)`
+// gives it.
 function fileButtons(title, svg, name) {
   return [
-    button('SVG', `SVG of ${title}`, () => saveFile(name('svg'), svgFile(svg()))),
-    button('PNG', `PNG of ${title}`, async () => saveFile(name('png'), await pngFile(svg()))),
+    button('SVG', `SVG of ${title}`, async () => saveFile(name('svg'), svgFile(await svg()))),
+    button('PNG', `PNG of ${title}`, async () => saveFile(name('png'), await pngFile(await svg()))),
   ];
 }
 

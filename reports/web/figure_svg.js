@@ -131,9 +131,10 @@ function scopeText({pipeline, seed, paper}) {
       .filter(Boolean).join(', ');
 }
 
-// `view`: a FigureView, which is drawn if it is not yet.
-function figureSvg(view) {
+// `view`: a FigureView, which is drawn if it is not yet; uPlot lays out a little later.
+async function figureSvg(view) {
   view.draw();
+  await Promise.resolve();
   const {shown, charts} = view;
   const sheet = new SvgSheet(charts[0]?.width ?? view.body.clientWidth, shown.title, shown.caption);
   sheet.paragraph(shown.title, {size: 16, weight: 700});

@@ -17,7 +17,17 @@ function recording() {
   return `${lines.join('\n')}\n`;
 }
 
-// The pages of other commands: {clocks, sweep, diagnose, compare}. The archive `monday` is there.
+// Half an hour of a clock that wanders, steps once, and was not measured for a minute.
+function clockLog() {
+  const lines = ['t_s,x_s'];
+  for (let i = 0; i < 1800; ++i) {
+    const ns = 30 * Math.sin(i / 200) + i * 7919 % 11 + (i < 1200 ? 0 : 400);
+    if (i < 600 || i >= 660) lines.push(`${i},${(1e-9 * ns).toExponential(6)}`);
+  }
+  return `${lines.join('\n')}\n`;
+}
+
+// The pages of other commands: {clocks, sweep, diagnose, compare, stability}. The archive `monday` is there.
 export function makeOtherPages(simbench, folder) {
   const run = (...words) => execFileSync(simbench, words, {cwd: folder, stdio: 'pipe'});
   const file = (name) => path.join(folder, name);
@@ -27,10 +37,12 @@ export function makeOtherPages(simbench, folder) {
       '--set', '/timeline/frames=120', '--seeds', '4', '--output', 'jitter');
   writeFileSync(file('rig.csv'), recording());
   run('diagnose', 'rig.csv', '--html', 'diagnose.html');
+  writeFileSync(file('clock.csv'), clockLog());
+  run('stability', 'clock.csv', '--limit', 'max_te=2us', '--html', 'stability.html');
   run('compare', 'monday', '--with-baseline', 'ntp_last_set', '--html', 'compare.html');
   return {
     clocks: file('clocks.html'), sweep: file('jitter/sweep.html'), diagnose: file('diagnose.html'),
-    compare: file('compare.html'),
+    compare: file('compare.html'), stability: file('stability.html'),
   };
 }
 

@@ -184,6 +184,18 @@ async function checkPaired(file) {
   });
 }
 
+async function checkStability(file) {
+  await withPage(file, kShapes[0], '', async (page, test) => {
+    await look.scrollThrough(page);
+    await test('a limit is in sight', () => use.showsLimits(page, 'time_error', 2));
+    for (const id of ['time_error', 'stability']) {
+      await test(`${id} has data and drew it`, () => look.isDrawn(page, id));
+      await test(`the SVG of ${id} has what is shown`, () => files.svgMirrorsFigure(page, id));
+      await test(`the SVG of ${id} looks like it`, () => files.svgLooksLikeCanvas(page, id));
+    }
+  });
+}
+
 async function checkWithoutScript(file) {
   const opened = await openPage(
       packages, pathToFileURL(file).href, {...kShapes[0], javaScriptEnabled: false});
@@ -192,8 +204,9 @@ async function checkWithoutScript(file) {
 }
 
 const {one, two, paired, hostile} = makeReport(simbench, folder);
+const others = makeOtherPages(simbench, folder);
 for (const shape of kShapes) await checkLook(one, shape);
-for (const file of [one, ...Object.values(makeOtherPages(simbench, folder))]) {
+for (const file of [one, ...Object.values(others)]) {
   for (const shape of kAccessShapes) await checkAccess(file, shape);
 }
 await checkTables(one, "The paper's metrics", 1);
@@ -204,6 +217,7 @@ await checkLink(one);
 await checkPrint(one);
 await checkArchives(two);
 await checkPaired(paired);
+await checkStability(others.stability);
 await withPage(hostile, kShapes[0], '', async (page, test) => {
   await test('names with markup are text', () => look.isHarmless(page));
 });

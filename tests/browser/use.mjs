@@ -148,3 +148,17 @@ export async function switchesArchive(page) {
   await bringUp(page, 'frame_errors');
   assert.notEqual(await dataOf(page, 'frame_errors'), before);
 }
+
+// A limit far from the data is in sight, until the reader zooms, and again afterwards.
+export async function showsLimits(page, id, limit) {
+  const host = await bringUp(page, id);
+  const top = () => host.evaluate(({uplot}) => uplot.scales.y.max);
+  assert.ok(await top() >= limit, `${await top()}`);
+  await host.focus();
+  await page.keyboard.press('+');
+  await page.waitForTimeout(50);
+  assert.ok(await top() < limit, `zoomed: ${await top()}`);
+  await page.keyboard.press('0');
+  await page.waitForTimeout(50);
+  assert.ok(await top() >= limit, `again: ${await top()}`);
+}

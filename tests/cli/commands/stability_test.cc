@@ -155,6 +155,25 @@ TEST_F(StabilityCommand, LimitsOfOnesOwnAreJudged) {
   EXPECT_THAT(wrong.err, HasSubstr("--limit max_te=20: value: found '20', allowed: a time"));
 }
 
+// Beside what it prints, with the status of the limits.
+TEST_F(StabilityCommand, WritesItsPage) {
+  file("a.csv", csv(200, 5, "t_s,x_s\n"));
+  const std::vector<std::string> command = {"stability",  "a.csv",  "--limit",
+                                            "max_te=1ns", "--html", "page.html"};
+  const ProgramResult result = run(command);
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("page.html written"));
+  EXPECT_THAT(result.out, HasSubstr("Time error (TE)"));
+  const std::string page = content("page.html");
+  for (const char* part : {"<!doctype html>", ": fails: ", "\"id\":\"time_error\"",
+                           "\"id\":\"stability\"", "--limit max_te=1ns"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(run(command).status, 3);
+  EXPECT_EQ(content("page.html"), page);
+  EXPECT_EQ(run({"stability", "a.csv", "--html", "none/page.html"}).status, 2);
+}
+
 TEST_F(StabilityCommand, DrawsItsFigure) {
   file("a.csv", csv(300, 5));
   const ProgramResult result =

@@ -67,5 +67,45 @@ TEST(StabilityFigure, ALimitAtOneTauIsAPoint) {
   EXPECT_DOUBLE_EQ(limit.y[0], 50e-6);
 }
 
+// Two pieces of 1 us with a pause between, in the unit that fits, with what is said of them.
+TEST(TimeErrorFigure, HasThePointsWithTheirGapsAndSteps) {
+  evaluation::ClockLog log{.path = "a.csv", .format = "csv"};
+  for (int i = 0; i < 200; ++i) {
+    const int second = i < 100 ? i : i + 50;
+    log.points.push_back(
+        {Microseconds(1'000'000 * second), (i % 2 == 0 ? 1e-6 : 1.01e-6) + (i < 50 ? 0 : 5e-6)});
+  }
+  const StabilityFinding finding{.log = evaluation::stability_of_log(log, {})};
+  const Figure figure = time_error_figure({finding}, {evaluation::limits_mask({"max_te=2us"})});
+  ASSERT_EQ(figure.panels.size(), 1U);
+  const FigurePanel& panel = figure.panels[0];
+  EXPECT_EQ(panel.title, "a.csv");
+  EXPECT_EQ(panel.y_label, "time error (us)");
+  const FigureSeries& line = panel.series.at(0);
+  ASSERT_EQ(line.x.size(), 201U);
+  EXPECT_EQ(line.x[0], 0);
+  EXPECT_NEAR(line.y[0], 1, 1e-9);
+  EXPECT_TRUE(std::isnan(line.y[100])) << "between the pieces";
+  EXPECT_EQ(line.x[101], 150);
+  EXPECT_NEAR(line.y[200], 6.01, 1e-9);
+  ASSERT_EQ(panel.lines.size(), 3U);
+  EXPECT_TRUE(panel.lines[0].vertical);
+  EXPECT_EQ(panel.lines[0].at, 50);
+  EXPECT_THAT(panel.lines[0].label, HasSubstr("step of "));
+  EXPECT_NEAR(panel.lines[1].at, 2, 1e-9);
+  EXPECT_NEAR(panel.lines[2].at, -2, 1e-9);
+}
+
+TEST(TimeErrorFigure, APanelForEachClock) {
+  EXPECT_EQ(time_error_figure({clock_with_noise(), clock_with_noise()}, {}).panels.size(), 2U);
+}
+
+TEST(TimeErrorFigure, SummariesHaveNoPoints) {
+  StabilityFinding finding = clock_with_noise();
+  finding.log.are_summaries = true;
+  finding.log.stability.series = {};
+  EXPECT_THAT(time_error_figure({finding}, {}).absent, HasSubstr("Summaries"));
+}
+
 }  // namespace
 }  // namespace simbench::reports

@@ -11,9 +11,9 @@
 namespace simbench::reports {
 namespace {
 
-const std::vector<std::string> kCommand = {"simbench", "compare", "monday", "tuesday"};
+const std::vector<std::string> kCompareLine = {"simbench", "compare", "monday", "tuesday"};
 
-bool has(const std::string& page, const std::string& part) {
+bool page_holds(const std::string& page, const std::string& part) {
   return page.find(part) != std::string::npos;
 }
 
@@ -29,36 +29,36 @@ TEST(ComparePage, BeginsWithTheVerdictsAndHasTheTable) {
   EXPECT_LT(answer, figures);
   EXPECT_LT(figures, table);
   EXPECT_NE(table, std::string::npos);
-  EXPECT_TRUE(has(page, "<h2>monday: all against plain</h2>"));
-  EXPECT_TRUE(has(page, "B is better than A in"));
-  EXPECT_TRUE(has(page, "simbench compare monday --with-baseline plain"));
-  EXPECT_TRUE(has(page, "data-pipeline=\"good\""));
+  EXPECT_TRUE(page_holds(page, "<h2>monday: all against plain</h2>"));
+  EXPECT_TRUE(page_holds(page, "B is better than A in"));
+  EXPECT_TRUE(page_holds(page, "simbench compare monday --with-baseline plain"));
+  EXPECT_TRUE(page_holds(page, "data-pipeline=\"good\""));
 }
 
 TEST(ComparePage, NamesBothSides) {
   const Archive a = sample_archive("monday");
   Archive b = sample_archive("tuesday");
-  EXPECT_TRUE(
-      has(compare_html(compare_archives(a, b, {}), kCommand), "<h2>tuesday against monday</h2>"));
-  EXPECT_TRUE(has(compare_html(compare_pipelines(a, "plain", "good", {}), kCommand),
-                  "<h2>monday: good against plain</h2>"));
+  EXPECT_TRUE(page_holds(compare_html(compare_archives(a, b, {}), kCompareLine),
+                         "<h2>tuesday against monday</h2>"));
+  EXPECT_TRUE(page_holds(compare_html(compare_pipelines(a, "plain", "good", {}), kCompareLine),
+                         "<h2>monday: good against plain</h2>"));
 }
 
 TEST(ComparePage, ShowsFirstThePipelineOfWhichSomethingIsSure) {
   const Archive a = sample_archive("monday");
   Archive b = sample_archive("tuesday");
-  EXPECT_TRUE(has(html_article(comparison_article(compare_archives(a, b, {}), kCommand)),
-                  "data-pipeline=\"plain\""));
+  EXPECT_TRUE(page_holds(html_article(comparison_article(compare_archives(a, b, {}), kCompareLine)),
+                         "data-pipeline=\"plain\""));
   scale(b.results.rows[1].amd_ms, 2);
-  EXPECT_TRUE(has(html_article(comparison_article(compare_archives(a, b, {}), kCommand)),
-                  "data-pipeline=\"good\""));
+  EXPECT_TRUE(page_holds(html_article(comparison_article(compare_archives(a, b, {}), kCompareLine)),
+                         "data-pipeline=\"good\""));
 }
 
 TEST(ComparePage, NamesFromFilesAreText) {
   const std::string evil = "</script><img src=x onerror=alert(1)>";
   Archive a = sample_archive(evil);
   a.results.rows[0].pipeline = evil;
-  EXPECT_FALSE(has(compare_html(compare_archives(a, a, {}), {evil}), "<img"));
+  EXPECT_FALSE(page_holds(compare_html(compare_archives(a, a, {}), {evil}), "<img"));
 }
 
 }  // namespace
