@@ -16,6 +16,7 @@
 #include "evaluation/scoring/ranked_by.h"
 #include "recording/dataset_folder.h"
 #include "recording/number_in.h"
+#include "reports/text/block.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::cli {
@@ -284,6 +285,7 @@ void Command::format(std::string& value, const std::vector<std::string>& formats
   const Option option =
       word("--format", "FORMAT", value, formats,
            fmt::format("One of: {}. Default: {}", fmt::join(formats, ", "), value));
+  if (std::ranges::count(formats, "latex") > 0) table_columns(value);
   if (std::find(formats.begin(), formats.end(), "json") == formats.end()) return;
   // Options are processed in the order of their addition, so --format is known here.
   json_flag(
@@ -298,6 +300,18 @@ void Command::format(std::string& value, const std::vector<std::string>& formats
         }
         value = "json";
       });
+}
+
+// `format`: as given; it lives as long as the command's options.
+void Command::table_columns(const std::string& format) {
+  list("--table-columns", "NAME,...", *table_columns_,
+       "Of tables, Markdown and LaTeX: only the columns of these headings, beside those that\n"
+       "name a row: 'AMD median,recall'");
+  checks_.emplace_back([names = table_columns_, &format] {
+    if (names->empty() || format == "table" || format == "markdown" || format == "latex") return;
+    refuse("--table-columns",
+           fmt::format("found with --format {}, allowed with: table, markdown, latex", format));
+  });
 }
 
 void Command::json_messages() {
@@ -315,11 +329,14 @@ void Command::footer(const std::string& text) { command_->footer(text); }
 
 void Command::runs(Action action, const std::function<void()>& check) {
   command_->callback([&line = line_, action = std::move(action), check, files = python_files_,
-                      command = command_, outputs = outputs_] {
+                      command = command_, outputs = outputs_, checks = checks_,
+                      columns = table_columns_] {
     for (CLI::Option* const output : outputs) check_output(*command, *output, outputs);
+    for (const auto& each : checks) each();
     if (check) check();
-    line.action = [&line, action, files] {
+    line.action = [&line, action, files, columns] {
       if (files) import_python(line, *files);
+      reports::set_table_columns(*columns);
       return action();
     };
   });

@@ -115,7 +115,8 @@ class Command {
   // --jobs: threads.
   void jobs(unsigned& value, const std::string& text = "Threads. Default: one for every core");
   // --format with the first of `formats` as its default; where they include "json" also --json,
-  // which sets that and makes the messages on standard error JSON lines (cli/messages.h).
+  // which sets that and makes the messages on standard error JSON lines (cli/messages.h); where
+  // they include "latex" also --table-columns, for every format of reports::drawn_as().
   void format(std::string& value, const std::vector<std::string>& formats);
   // --json for a command whose result is a file: messages as JSON lines only.
   void json_messages();
@@ -128,11 +129,15 @@ class Command {
 
  private:
   void json_flag(const std::string& text, std::function<void()> action);
+  void table_columns(const std::string& format);
 
   CommandLine& line_;
   CLI::App* command_;
   std::shared_ptr<std::vector<std::string>> python_files_;  // null without --python
+  std::shared_ptr<std::vector<std::string>> table_columns_ =
+      std::make_shared<std::vector<std::string>>();
   std::vector<CLI::Option*> outputs_;
+  std::vector<std::function<void()>> checks_;  // while parsing, before that of runs()
 };
 
 std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);

@@ -65,8 +65,8 @@ void add_level(std::string label, double at, int colour, FigurePanel& panel) {
   }
 }
 
-std::optional<FigurePanel> differences(const Comparison& comparison,
-                                       const ComparedPipeline& pipeline, std::size_t metric) {
+std::optional<FigurePanel> seed_differences(const Comparison& comparison,
+                                            const ComparedPipeline& pipeline, std::size_t metric) {
   const Metric& judged = *comparison.judged[metric];
   const PairedComparison& found = pipeline.metrics[metric];
   if (found.pairs == 0) return std::nullopt;
@@ -85,7 +85,7 @@ std::optional<FigurePanel> differences(const Comparison& comparison,
   add_level("no difference", 0, -1, made);
   add_level(fmt::format("mean {}", difference_text(judged, found.difference.value)),
             shown(found.difference.value), kColourOfB, made);
-  // Of equal values all of these are one line.
+  // All of these are one line where the values are equal.
   if (found.difference.low == found.difference.high) return made;
   add_level("interval", shown(found.difference.low), kColourOfB, made);
   add_level("interval", shown(found.difference.high), kColourOfB, made);
@@ -128,7 +128,7 @@ std::vector<Figure> comparison_figures(const Comparison& comparison) {
         "A point is a pair of runs in one world, so what their worlds have in common cancels. "
         "Dashed: their mean with its interval at the level that Holm's correction leaves to it "
         "(without one, there are too few pairs for a verdict), and no difference.",
-        differences));
+        seed_differences));
   }
   return figures;
 }

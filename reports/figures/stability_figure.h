@@ -18,8 +18,8 @@ namespace simbench::reports {
 Figure stability_figure(const std::vector<StabilityFinding>& findings,
                         const std::vector<evaluation::ClockMask>& masks);
 
-// The points that the deviations are of, with the largest steps between them and, where a mask limits the
-// largest time error, that limit on either side. Of summaries there are no points to draw.
+// The points that the deviations are of, with the largest steps between them and, where a mask
+// limits the largest time error, that limit on either side. Summaries have no points to draw.
 Figure time_error_figure(const std::vector<StabilityFinding>& findings,
                          const std::vector<evaluation::ClockMask>& masks);
 

@@ -170,7 +170,7 @@ std::string html_report(const ReportInput& input) {
     parts += html_article(input.front->article);
     data.push_back(figures_json(input.front->figures));
   } else {
-    SideBySide several = side_by_side(input.archives, input.command);
+    SideBySide several = archives_side_by_side(input.archives, input.command);
     parts += several.above;
     for (HtmlArticle& article : several.articles) {
       article.number = data.size();

@@ -8,7 +8,7 @@
 // leaderboard_report.h). The figures are data (reports/page/html_page.h), which the page's
 // JavaScript (reports/web/) draws with the embedded uPlot. All text from an archive is escaped.
 //
-// Of several archives it begins with all of them side by side (reports/page/side_by_side.h).
+// A report of several archives begins with all of them side by side (reports/page/side_by_side.h).
 //
 //   const ReportInput input = {.archives = {{.archive = read_archive("results/monday"),
 //                                            .figures = figures, .notes = {}}},

@@ -72,8 +72,8 @@ std::string compare_into(const Archive& first, const Archive& other,
 
 }  // namespace
 
-SideBySide side_by_side(const std::vector<ReportedArchive>& archives,
-                        const std::vector<std::string>& command) {
+SideBySide archives_side_by_side(const std::vector<ReportedArchive>& archives,
+                                 const std::vector<std::string>& command) {
   if (archives.size() < 2) return {};
   SideBySide parts;
   Block together = archive_block(archives);

@@ -4,7 +4,7 @@
 // Archives that cannot be paired, of other worlds or without a common seed, are in the table alone,
 // and a paragraph has the reason.
 //
-//   const SideBySide parts = side_by_side({monday, tuesday}, {"simbench", "report", ...});
+//   const SideBySide parts = archives_side_by_side({monday, tuesday}, {"simbench", "report", ...});
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct SideBySide {
   std::vector<std::string> data{};      // figures_json() of each
 };
 
-SideBySide side_by_side(const std::vector<ReportedArchive>& archives,
-                        const std::vector<std::string>& command);
+SideBySide archives_side_by_side(const std::vector<ReportedArchive>& archives,
+                                 const std::vector<std::string>& command);
 
 }  // namespace simbench::reports

@@ -4,14 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/split.hpp>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
-#include "recording/collected.h"
 #include "recording/text_fields.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/plain_text.h"
+#include "scenarios/loader.h"
 
 namespace simbench::reports {
 namespace {
@@ -21,35 +20,39 @@ std::string one_line(std::string text) {
   return text;
 }
 
+std::vector<std::string> the_table_columns;
+
+// Nothing if it has none of them.
+std::optional<Table> chosen_columns(const Table& table, const std::vector<std::string>& names) {
+  std::vector<std::size_t> kept;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const bool is_named = std::ranges::count(names, one_line(table.columns[c].header)) > 0;
+    if (c < table.key_columns || is_named) kept.push_back(c);
+  }
+  if (kept.size() == table.key_columns) return std::nullopt;
+  std::vector<Column> columns;
+  columns.reserve(kept.size());
+  for (const std::size_t c : kept) columns.push_back(table.columns[c]);
+  Table chosen(std::move(columns), table.key_columns);
+  for (const std::vector<std::string>& row : table.rows) {
+    std::vector<std::string> cells;
+    cells.reserve(kept.size());
+    for (const std::size_t c : kept) cells.push_back(row[c]);
+    chosen.add(std::move(cells));
+  }
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const auto pictures = table.sparklines.find(kept[i]);
+    if (pictures != table.sparklines.end()) chosen.sparklines[i] = pictures->second;
+  }
+  return chosen;
+}
+
 std::string markdown_cell(const std::string& text) {
   std::string escaped;
   for (const char c : one_line(text)) {
     escaped += c == '|' ? std::string("\\|") : std::string(1, c);
   }
   return escaped;
-}
-
-// Writes what a terminal would obey as \xHH: names may come from a file that anyone wrote.
-Table printable(Table table) {
-  for (Column& column : table.columns) column.header = printable_lines(column.header);
-  for (std::vector<std::string>& row : table.rows) {
-    for (std::string& cell : row) cell = printable_name(cell);
-  }
-  return table;
-}
-
-Document printable(Document document) {
-  const auto show = [](std::vector<std::string>& texts) {
-    for (std::string& text : texts) text = printable_lines(text);
-  };
-  document.title = printable_name(document.title);
-  show(document.head);
-  for (Block& block : document.blocks) {
-    block.heading = printable_name(block.heading);
-    show(block.prose);
-    show(block.items);
-  }
-  return document;
 }
 
 // Drops the empty line before the first part of a document.
@@ -76,74 +79,6 @@ std::string markdown_block(const Block& block, const char* level) {
   if (!block.items.empty()) out += "\n";
   for (const std::string& item : block.items) out += fmt::format("- {}\n", item);
   return out;
-}
-
-// Sets a minus where a number has one.
-std::string latex_cell(const std::string& text) {
-  const bool is_negative = text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9';
-  return is_negative ? "$-$" + latex_escaped(text.substr(1)) : latex_escaped(text);
-}
-
-// After the end of a row a bracket would be its optional argument, and a star a part of it.
-std::string latex_row(const std::vector<std::string>& cells) {
-  const bool is_argument = cells.front().starts_with('[') || cells.front().starts_with('*');
-  return fmt::format("    {}{} \\\\\n", is_argument ? "{}" : "", fmt::join(cells, " & "));
-}
-
-// The rows of the header, whose last lines stand in one row.
-std::string latex_header(const Table& table) {
-  std::vector<std::vector<std::string>> lines;
-  std::size_t rows = 1;
-  for (const Column& column : table.columns) {
-    lines.emplace_back();
-    boost::split(lines.back(), column.header, [](char c) { return c == '\n'; });
-    rows = std::max(rows, lines.back().size());
-  }
-  std::string out;
-  for (std::size_t row = 0; row < rows; ++row) {
-    std::vector<std::string> cells;
-    cells.reserve(lines.size());
-    for (const std::vector<std::string>& of_column : lines) {
-      const std::size_t missing = rows - of_column.size();
-      cells.push_back(row < missing ? "" : latex_cell(of_column[row - missing]));
-    }
-    out += latex_row(cells);
-  }
-  return out;
-}
-
-std::string latex_table(const Table& raw, const std::string& caption) {
-  const Table table = printable(raw);
-  std::string columns;
-  for (const Column& column : table.columns) columns += column.align == Align::kLeft ? 'l' : 'r';
-  std::string rows;
-  for (const std::vector<std::string>& row : table.rows) {
-    const std::vector<std::string> cells = collected(row, latex_cell);
-    rows += latex_row(cells);
-  }
-  const std::string stated =
-      caption.empty() ? "" : fmt::format("  \\caption{{{}}}\n", latex_escaped(caption));
-  return fmt::format(
-      "\\begin{{table}}\n  \\centering\n  \\footnotesize\n{}  \\begin{{tabular}}{{{}}}\n"
-      "    \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n\\end{{table}}\n",
-      stated, columns, latex_header(table), rows);
-}
-
-std::string latex_block(const Block& block) {
-  std::string out;
-  if (block.table) {
-    out += "\n" + latex_table(*block.table, block.heading);
-  } else if (!block.heading.empty()) {
-    out += fmt::format("\n\\paragraph{{{}}}\n", latex_escaped(block.heading));
-  }
-  for (const std::string& text : block.prose) out += "\n" + latex_escaped(text) + "\n";
-  if (block.items.empty()) return out;
-  out += "\n\\begin{itemize}\n";
-  // The braces keep an item that begins with '[' from being a label.
-  for (const std::string& item : block.items) {
-    out += fmt::format("  \\item {{}}{}\n", latex_escaped(item));
-  }
-  return out + "\\end{itemize}\n";
 }
 
 // Attributes of a header's cell.
@@ -180,6 +115,28 @@ void add(std::optional<Block> block, std::vector<Block>& blocks) {
 void Table::add(std::vector<std::string> cells) {
   SIMBENCH_ASSERT(cells.size() == columns.size(), "a row has a cell for every column");
   rows.push_back(std::move(cells));
+}
+
+Table printable(Table table) {
+  for (Column& column : table.columns) column.header = printable_lines(column.header);
+  for (std::vector<std::string>& row : table.rows) {
+    for (std::string& cell : row) cell = printable_name(cell);
+  }
+  return table;
+}
+
+Document printable(Document document) {
+  const auto show = [](std::vector<std::string>& texts) {
+    for (std::string& text : texts) text = printable_lines(text);
+  };
+  document.title = printable_name(document.title);
+  show(document.head);
+  for (Block& block : document.blocks) {
+    block.heading = printable_name(block.heading);
+    show(block.prose);
+    show(block.items);
+  }
+  return document;
 }
 
 std::string plain(const Table& table) { return aligned(printable(table)); }
@@ -222,18 +179,28 @@ std::string markdown(const Document& raw) {
   return without_first_break(std::move(out));
 }
 
-std::string latex(const Document& raw) {
-  const Document document = printable(raw);
-  std::string out = "% Needs \\usepackage{booktabs}.\n";
-  if (!document.title.empty()) {
-    out += fmt::format("\\subsection*{{{}}}\n", latex_escaped(document.title));
+Document with_columns(Document document, const std::vector<std::string>& names) {
+  if (names.empty()) return document;
+  std::vector<std::string> known;
+  for (Block& block : document.blocks) {
+    if (!block.table) continue;
+    for (std::size_t c = block.table->key_columns; c < block.table->columns.size(); ++c) {
+      known.push_back(one_line(block.table->columns[c].header));
+    }
+    block.table = chosen_columns(*block.table, names);
   }
-  for (const std::string& text : document.head) out += "\n" + latex_escaped(text) + "\n";
-  for (const Block& block : document.blocks) out += latex_block(block);
-  return out;
+  for (const std::string& name : names) {
+    if (std::ranges::count(known, name) > 0) continue;
+    throw scenarios::InputError(
+        fmt::format("--table-columns: found '{}', allowed: {}", name, fmt::join(known, ", ")));
+  }
+  return document;
 }
 
-std::string drawn_as(const std::string& format, const Document& document) {
+void set_table_columns(std::vector<std::string> names) { the_table_columns = std::move(names); }
+
+std::string drawn_as(const std::string& format, const Document& raw) {
+  const Document document = with_columns(raw, the_table_columns);
   if (format == "markdown") return markdown(document);
   if (format == "html") return html(document);
   return format == "latex" ? latex(document) : plain(document);

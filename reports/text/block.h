@@ -123,9 +123,23 @@ std::string plain(const Document& document);
 std::string markdown(const Table& table);
 std::string markdown(const Document& document);
 
-// Text of a document of the reader's own, which loads booktabs: a table environment for each table,
-// with the block's heading as its caption. Lines of a header are rows.
+// Text of a document of the reader's own, whose first line has the packages that it needs: a table
+// environment for each table, with the block's heading as its caption; lines of a header are rows.
+// A table that is wider than the text of the class article is divided into parts, each with the key
+// columns first, and words of its text wrap; one that is longer than a page is a longtable.
 std::string latex(const Document& document);
+
+// What a terminal would obey, as \xHH: names may come from a file that anyone wrote. A document's
+// without its tables.
+Table printable(Table table);
+Document printable(Document document);
+
+// The document with these columns of its tables alone, by their headings in one line ("AMD
+// median"), beside the key columns; a table that has none of them is left out. No names: all of it.
+// Throws scenarios::InputError for a name that no table has.
+Document with_columns(Document document, const std::vector<std::string>& names);
+// The names for all that drawn_as() draws. Not while another thread prints.
+void set_table_columns(std::vector<std::string> names);
 
 // The document as `--format` says: "markdown", "latex", "html", else plain.
 std::string drawn_as(const std::string& format, const Document& document);

@@ -9,6 +9,7 @@
 
 #include "recording/text_fields.h"
 #include "reports/text/block.h"
+#include "reports/text/table_parts.h"
 
 namespace simbench::reports {
 namespace {
@@ -138,33 +139,18 @@ void narrow_last(Part& part, std::size_t page_width) {
   width -= std::min(used - page_width, width - std::min(width, kNarrowest));
 }
 
-// The columns in order, as many in a part as fit.
-std::vector<Part> dealt_out(const std::vector<ColumnWidth>& needs, const Part& keys,
-                            std::size_t width) {
-  std::vector<Part> parts = {keys};
-  for (std::size_t c = keys.size(); c < needs.size(); ++c) {
-    const bool fits = width_of(parts.back()) + kGap + needs[c].least <= width;
-    if (!fits && parts.back().size() > keys.size()) parts.push_back(keys);
-    parts.back().push_back({c, needs[c].least});
-  }
-  return parts;
-}
-
 std::vector<Part> parts_of(const std::vector<ColumnWidth>& needs, std::size_t key_columns) {
   Part all;
   for (std::size_t c = 0; c < needs.size(); ++c) all.push_back({c, needs[c].natural});
   if (!the_page_width || all.empty() || width_of(all) <= *the_page_width) return {all};
   const std::size_t page = *the_page_width;
-  Part keys;
-  for (std::size_t c = 0; c < std::min(key_columns, needs.size()); ++c) {
-    keys.push_back({c, needs[c].least});
-  }
-  std::vector<Part> parts = dealt_out(needs, keys, page);
-  // The same number of parts, but of similar widths.
-  for (std::size_t width = page; width > 0; --width) {
-    std::vector<Part> narrower = dealt_out(needs, keys, width);
-    if (narrower.size() > parts.size()) break;
-    parts = std::move(narrower);
+  std::vector<std::size_t> widths;
+  widths.reserve(needs.size());
+  for (const ColumnWidth& need : needs) widths.push_back(need.least);
+  std::vector<Part> parts;
+  for (const std::vector<std::size_t>& columns : column_parts(widths, key_columns, kGap, page)) {
+    Part& part = parts.emplace_back();
+    for (const std::size_t c : columns) part.push_back({c, needs[c].least});
   }
   for (Part& part : parts) {
     widen(part, needs, page);

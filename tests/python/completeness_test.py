@@ -26,6 +26,7 @@ OF_EVERY_COMMAND = {
     "help": "help() of Python",
     "format": "results have all formats",
     "json": "messages are exceptions, warnings and notes",
+    "table-columns": "tables are pandas, whose columns can be chosen",
 }
 ELSEWHERE = {
     ("run", "output"): "Result.save()",

@@ -1,9 +1,11 @@
 // What each renderer makes of the same blocks.
 #include "reports/text/block.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "reports/text/plain_text.h"
+#include "scenarios/loader.h"
 
 namespace simbench::reports {
 namespace {
@@ -52,12 +54,15 @@ TEST(Document, LatexHasBooktabsTablesAndEscapes) {
                           .blocks = {{.heading = "50 % #1", .table = table, .prose = {"{x}"}},
                                      {.heading = "Notes", .items = {"[y]", "$z"}}}};
   EXPECT_EQ(latex(document),
-            "% Needs \\usepackage{booktabs}.\n"
+            "% Needs \\usepackage{array,booktabs,longtable}. Fits the class article in one "
+            "column.\n"
+            "{\\sloppy\n"
             "\\subsection*{a\\_b}\n"
             "\nchanged: 45 $\\rightarrow$ 30\n"
-            "\n\\begin{table}\n"
+            "\n\\begin{table}[!htbp]\n"
             "  \\centering\n"
             "  \\footnotesize\n"
+            "  \\setlength{\\tabcolsep}{4pt}\n"
             "  \\caption{50 \\% \\#1}\n"
             "  \\begin{tabular}{lr}\n"
             "    \\toprule\n"
@@ -74,10 +79,77 @@ TEST(Document, LatexHasBooktabsTablesAndEscapes) {
             "\n\\begin{itemize}\n"
             "  \\item {}[y]\n"
             "  \\item {}\\$z\n"
-            "\\end{itemize}\n");
+            "\\end{itemize}\n"
+            "\\par}\n");
   EXPECT_EQ(drawn_as("latex", document), latex(document));
   EXPECT_EQ(drawn_as("markdown", document), markdown(document));
   EXPECT_EQ(drawn_as("table", document), plain(document));
+}
+
+TEST(Document, HasTheChosenColumnsBesideTheKeys) {
+  Table other({{"host", Align::kLeft}, {"offset"}});
+  other.add({"a", "1"});
+  const Document document{.blocks = {{.heading = "One", .table = sample_table()},
+                                     {.heading = "Two", .table = other, .prose = {"text"}}}};
+  const Document chosen = with_columns(document, {"note"});
+  EXPECT_EQ(plain(*chosen.blocks[0].table),
+            "name    note\n"
+            "------  ----\n"
+            "a       x|y\n"
+            "longer\n");
+  EXPECT_FALSE(chosen.blocks[1].table.has_value());
+  EXPECT_EQ(chosen.blocks[1].prose.size(), 1U);
+  EXPECT_EQ(plain(with_columns(document, {})), plain(document));
+  EXPECT_EQ(with_columns(document, {"AMD median ms", "offset"}).blocks[1].table->columns.size(),
+            2U);
+  EXPECT_THAT([&] { with_columns(document, {"AMD"}); },
+              testing::ThrowsMessage<scenarios::InputError>(
+                  testing::HasSubstr("found 'AMD', allowed: AMD median ms, note, offset")));
+}
+
+Document wide_document(std::size_t columns, std::size_t rows) {
+  std::vector<Column> heads = {{"name", Align::kLeft}};
+  for (std::size_t c = 0; c < columns; ++c) heads.push_back({fmt::format("column {}", c)});
+  Table table(std::move(heads));
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::vector<std::string> cells = {fmt::format("row {}", row)};
+    for (std::size_t c = 0; c < columns; ++c) cells.push_back(fmt::format("{}.{}", row, c));
+    table.add(std::move(cells));
+  }
+  return {.blocks = {{.heading = "Wide", .table = std::move(table)}}};
+}
+
+std::size_t count_in(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(Document, LatexDividesWhatIsWiderThanAPage) {
+  const std::string text = latex(wide_document(14, 3));
+  EXPECT_GE(count_in(text, "\\begin{table}"), 2U);
+  EXPECT_EQ(count_in(text, "\\begin{table}"), count_in(text, "row 2 &"));
+  EXPECT_THAT(text, testing::HasSubstr("\\caption{Wide, part 1 of "));
+  EXPECT_EQ(count_in(text, " 2.13 "), 1U) << "each column once";
+  EXPECT_EQ(count_in(latex(wide_document(3, 3)), "\\begin{table}"), 1U);
+}
+
+TEST(Document, LatexLetsLongTablesGoOverPages) {
+  const std::string text = latex(wide_document(3, 60));
+  EXPECT_EQ(count_in(text, "\\begin{longtable}"), 1U);
+  EXPECT_EQ(count_in(text, "name & column 0"), 2U) << "the heading of every page";
+  EXPECT_EQ(count_in(latex(wide_document(3, 20)), "\\begin{longtable}"), 0U);
+}
+
+TEST(Document, LatexWrapsWordsAndBreaksLongNames) {
+  Table table({{"name", Align::kLeft}, {"meaning", Align::kLeft}, {"value"}});
+  table.add(
+      {"a_name_of_several_words_which_is_long", std::string(30, 'x') + " and more words", "1"});
+  const std::string text =
+      latex(Document{.blocks = {{.table = table, .prose = {"/a/pointer/of/some/length 45 %"}}}});
+  EXPECT_EQ(count_in(text, "\\raggedright\\arraybackslash}p{"), 2U);
+  EXPECT_THAT(text, testing::HasSubstr("a\\_\\allowbreak{}name\\_\\allowbreak{}"));
+  EXPECT_THAT(text, testing::HasSubstr("/\\allowbreak{}length 45 \\%"));
 }
 
 // Names of scenarios and pipelines come from files that anyone may have written.
