@@ -180,7 +180,7 @@ function svgAcross(chart, {place, upright}, colour, dash) {
 
 function svgAbove(chart, panel, marked) {
   const lines = placedLines(chart, panel);
-  const pulse = placedPulse(chart, panel, marked);
+  const pulse = panel.x_is_pulse && marked != null ? placeAcross(chart, 'x', marked) : null;
   return [
     ...lines.map((line) => svgAcross(chart, line, line.colour, '6 4')),
     ...lines.map(({label, left, bottom}) => svgText(label, onPage(left), onPage(bottom), {

@@ -41,7 +41,7 @@ function placeAcross(chart, scale, at) {
 }
 
 // From edge to edge.
-function drawAcross(chart, {place, upright}, colour, dash) {
+function strokeAcross(chart, {place, upright}, colour, dash) {
   const {ctx, bbox} = chart;
   ctx.strokeStyle = colour;
   ctx.lineWidth = 1.5 * uPlot.pxRatio;
@@ -52,6 +52,13 @@ function drawAcross(chart, {place, upright}, colour, dash) {
   ctx.stroke();
 }
 
+// A line at a value of a scale. Returns where it is, nothing if out of sight.
+function drawAcross(chart, scale, at, colour, dash) {
+  const placed = placeAcross(chart, scale, at);
+  if (placed) strokeAcross(chart, placed, colour, dash);
+  return placed;
+}
+
 // Where a note that begins at x stands inside the chart.
 function noteLeft(chart, text, x) {
   const {ctx, bbox} = chart;
@@ -59,9 +66,10 @@ function noteLeft(chart, text, x) {
   return Math.max(bbox.left + 2, Math.min(x, bbox.left + bbox.width - width - 4));
 }
 
-// Text with the paper's colour around it.
-function drawNote(chart, text, left, y) {
+// Text with the paper's colour around it, kept inside the chart.
+function drawNote(chart, text, x, y) {
   const {ctx} = chart;
+  const left = noteLeft(chart, text, x);
   ctx.setLineDash([]);
   ctx.lineWidth = 3 * uPlot.pxRatio;
   ctx.strokeStyle = themeColour('--paper');
@@ -94,16 +102,16 @@ function placedLines(chart, panel) {
   return lines;
 }
 
-// The pulse that the reader has marked; nothing if there is none in sight.
-function placedPulse(chart, panel, marked) {
-  return panel.x_is_pulse && marked != null ? placeAcross(chart, 'x', marked) : null;
+// Labels stand over all lines.
+function drawLines(chart, panel) {
+  const lines = placedLines(chart, panel);
+  for (const line of lines) strokeAcross(chart, line, line.colour, [6, 4]);
+  for (const {label, left, bottom} of lines) drawNote(chart, label, left, bottom);
 }
 
-// Labels stand over all lines.
 function drawAbove(chart, panel, marked) {
-  const lines = placedLines(chart, panel);
-  for (const line of lines) drawAcross(chart, line, line.colour, [6, 4]);
-  for (const {label, left, bottom} of lines) drawNote(chart, label, left, bottom);
-  const pulse = placedPulse(chart, panel, marked);
-  if (pulse) drawAcross(chart, pulse, themeColour('--accent'), []);
+  drawLines(chart, panel);
+  if (panel.x_is_pulse && marked != null) {
+    drawAcross(chart, 'x', marked, themeColour('--accent'), []);
+  }
 }
