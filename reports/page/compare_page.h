@@ -2,6 +2,7 @@
 // report of several archives: the verdicts, A and B side by side, their differences seed by seed,
 // the table and how to read it.
 //
+//   const Archive monday = read_archive("monday");
 //   file << compare_html(compare_with_baseline(monday, "ntp_last_set", {}),
 //                        {"simbench", "compare", "monday", "--with-baseline", "ntp_last_set"});
 #pragma once

@@ -4,7 +4,8 @@
 // Archives that cannot be paired, of other worlds or without a common seed, are in the table alone,
 // and a paragraph has the reason.
 //
-//   const SideBySide parts = archives_side_by_side({monday, tuesday}, {"simbench", "report", ...});
+//   const std::vector<ReportedArchive> archives = {{.archive = read_archive("monday")}};
+//   const SideBySide parts = archives_side_by_side(archives, {"simbench", "report", "monday"});
 #pragma once
 
 #include <string>
