@@ -1,7 +1,7 @@
 // The stability of measured clocks as one self-contained HTML file (`simbench stability --html`):
 // the verdict of the limits, the time error, ADEV, TDEV and MTIE with their intervals, the tables.
 //
-//   file << stability_html({.findings = found, .command = {"simbench", "stability", "ptp4l.log"}});
+//   file << stability_html({.command = {"simbench", "stability", "ptp4l.log"}});
 #pragma once
 
 #include <string>
