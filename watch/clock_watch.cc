@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "evaluation/stability/log_stability.h"
@@ -19,6 +20,7 @@ namespace {
 using evaluation::ClockLogPoint;
 
 constexpr std::size_t kNeighbours = 33;  // differences that a step is compared with
+constexpr std::size_t kOutliers = 4;     // of these, at most
 
 double log_seconds(const ClockLogPoint& point) {
   return std::chrono::duration<double>(point.time).count();
@@ -28,6 +30,18 @@ double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
+}
+
+// How far differences lie from the usual one. Where most of them are alike (a clock of coarse
+// steps, a sawtooth), the median says too little; the mean, without the few largest, does not.
+double scatter_of(const std::vector<double>& differences, double usual) {
+  std::vector<double> distances;
+  for (const double each : differences) distances.push_back(std::abs(each - usual));
+  std::ranges::sort(distances);
+  const std::size_t kept = distances.size() - std::min(kOutliers, distances.size() / 4);
+  const double sum = std::accumulate(distances.begin(),
+                                     distances.begin() + static_cast<std::ptrdiff_t>(kept), 0.0);
+  return std::max(kSigmaOfMad * distances[distances.size() / 2], sum / static_cast<double>(kept));
 }
 
 }  // namespace
@@ -70,14 +84,7 @@ void ClockWatch::look_for_step() {
     before.push_back(error(back) - error(back + 1));
   }
   const double usual = middle_of(before);
-  double sum = 0;
-  std::vector<double> distances;
-  for (const double each : before) {
-    distances.push_back(std::abs(each - usual));
-    sum += distances.back();
-  }
-  double scatter = kSigmaOfMad * middle_of(distances);
-  if (scatter == 0) scatter = sum / static_cast<double>(distances.size());
+  const double scatter = scatter_of(before, usual);
   const double jump = error(1) - error(2) - usual;
   const double after = error(0) - error(1) - usual;
   if (!(std::abs(jump) > evaluation::kStepFactor * scatter) || jump == 0) return;

@@ -1,10 +1,10 @@
 // A clock that is watched: its time error as its daemon's log states it, and whether it stepped.
 //
 // A step is a difference of neighbouring errors that is farther from the median of the last ones
-// than kStepFactor times their scatter, and that the next error does not take back: it is known
-// with the second sample behind it. That is the rule of steps_of()
-// (evaluation/stability/time_error.h), which looks at whole series. A clock is off while its error
-// exceeds the limit, if there is one, until kBackSamples in order are within it.
+// than kStepFactor times their scatter (the larger of a median and of a trimmed mean distance), and
+// that the next error does not take back: it is known with its second sample. That is the rule of
+// steps_of() (evaluation/stability/time_error.h), which looks at whole series. A clock is off while
+// its error exceeds the limit, if there is one, until kBackSamples in order are within it.
 //
 // Memory: the last kKeptErrors. Time is the log's own.
 //

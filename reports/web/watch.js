@@ -114,5 +114,5 @@ showTheme(dark.matches ? 'dark' : 'light');
 dark.addEventListener('change', () => showTheme(dark.matches ? 'dark' : 'light'));
 $('theme').addEventListener('click', () => showTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark'));
 document.addEventListener('visibilitychange', () => drawnAt = 0);
-addEventListener('resize', () => drawnAt = 0);
+addEventListener('resize', () => drawnAt > 0 && draw());
 ask();

@@ -10,6 +10,8 @@ import simbench
 
 #: Commands that Python has not, and why.
 NOT_IN_PYTHON = {
+    "explore": "a server of a page; run() has its results",
+    "watch": "goes on until it is ended; its events are lines of JSON",
     "node": "a program of its own on each host of a rig",
     "relay": "a program of its own between nodes",
     "keygen": "writes a secret for hosts",
