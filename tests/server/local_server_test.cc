@@ -301,6 +301,51 @@ TEST(LocalServerTest, ASlowReaderIsClosed) {
   closing.wait();
 }
 
+// What strangers may send, of which nothing reaches the handler.
+std::vector<std::string> hostile_requests(const Served& served) {
+  const std::string own = "Host: 127.0.0.1:" + std::to_string(served.server.port()) + "\r\n";
+  const std::string path = served.token_path();
+  return {"GET / HTTP/1.1\r\n" + own + "\r\n",
+          "GET /../../etc/passwd HTTP/1.1\r\n" + own + "\r\n",
+          "GET " + path + " HTTP/1.1\r\nHost: evil.example\r\n\r\n",
+          "GET " + path + " HTTP/1.1\r\n" + own + "Origin: http://evil.example\r\n\r\n",
+          "POST " + path + "look HTTP/1.1\r\n" + own +
+              "Content-Type: text/plain\r\nContent-Length: 2\r\n\r\n{}",
+          "DELETE " + path + " HTTP/1.1\r\n" + own + "\r\n",
+          "POST / HTTP/1.1\r\n" + own + "Content-Length: 99999999999\r\n\r\n",
+          "GET " + path.substr(0, path.size() - 2) + "x/ HTTP/1.1\r\n" + own + "\r\n",
+          std::string(9000, 'A') + "\r\n\r\n",
+          std::string("\0\0\0\0\r\n\r\n", 8)};
+}
+
+// While strangers knock as fast as they can, the user's stream goes on and nothing else is asked.
+TEST(LocalServerTest, HostileRequestsChangeNothing) {
+  Streamed streamed;
+  Client user(streamed.served);
+  user.send(post(streamed.served, "look", "{}"));
+  const std::shared_ptr<PageStream> stream = streamed.stream();
+  std::vector<std::thread> strangers;
+  for (int i = 0; i < 4; ++i) {
+    strangers.emplace_back([&streamed] {
+      const std::vector<std::string> requests = hostile_requests(streamed.served);
+      for (int round = 0; round < 50; ++round) {
+        for (const std::string& request : requests) {
+          EXPECT_THAT(answered(streamed.served, request), StartsWith("HTTP/1.1 4"));
+        }
+      }
+    });
+  }
+  for (int i = 0; i < 20; ++i) {
+    const std::string text = "line " + std::to_string(i) + "\n";
+    stream->send(text);
+    EXPECT_THAT(user.until(text), HasSubstr(text));
+  }
+  for (std::thread& stranger : strangers) stranger.join();
+  EXPECT_EQ(streamed.served.server.counts().answered, 1u);
+  EXPECT_EQ(streamed.served.server.counts().refused, 4u * 50u * 10u);
+  EXPECT_FALSE(stream->is_closed());
+}
+
 TEST(LocalServerTest, StoppingClosesStreamsAndEndsRun) {
   Closing closing;
   {
