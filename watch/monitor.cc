@@ -11,6 +11,7 @@
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/recordings/diagnose_answer.h"
 #include "reports/text/answer_json.h"
+#include "watch/folder_text.h"
 #include "watch/pipe_text.h"
 
 namespace simbench::watch {
@@ -34,6 +35,14 @@ std::unique_ptr<GrowingText> text_of(const std::string& path, bool is_command) {
   if (is_command) return std::make_unique<PipeText>(PipeText::of_command(path));
   if (path == "-") return std::make_unique<PipeText>(PipeText::of_standard_input());
   return std::make_unique<Tail>(path);
+}
+
+GrownFrames frames_of(const std::string& path, const std::optional<RecordingColumns>& columns) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(path, failed)) {
+    return {std::make_unique<FolderText>(path), FolderText::columns()};
+  }
+  return {text_of(path, false), columns};
 }
 
 const char* state_of(const WatchedCamera& camera) {
@@ -62,9 +71,8 @@ Json camera_json(const WatchedCamera& camera) {
 
 Monitor::Monitor(const WatchOptions& options) {
   for (const std::string& path : options.recordings) {
-    recordings_.push_back(std::make_unique<Recording>(
-        Recording{.grown = GrownFrames(text_of(path, false), options.columns),
-                  .source = {.path = path, .stall_s = kStallS}}));
+    recordings_.push_back(std::make_unique<Recording>(Recording{
+        .grown = frames_of(path, options.columns), .source = {.path = path, .stall_s = kStallS}}));
   }
   for (const WatchedLog& log : options.clock_logs) {
     clocks_.push_back(std::make_unique<Clock>(

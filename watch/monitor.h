@@ -53,7 +53,7 @@ struct WatchedLog {
 };
 
 struct WatchOptions {
-  std::vector<std::string> recordings{};  // CSV
+  std::vector<std::string> recordings{};  // CSV, and folders that `simbench record` writes
   std::optional<RecordingColumns> columns{};
   std::vector<WatchedLog> clock_logs{};
   evaluation::ClockLogOptions clock{};

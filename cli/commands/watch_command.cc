@@ -41,6 +41,7 @@ Examples:
   simbench watch front.csv back.csv --clock-log hostA=/var/log/chrony/tracking.log
   ptp4l -m -i eth0 | simbench watch --clock-log -
   simbench watch --clock-command 'chronyc -c -n tracking' --limit-ms 0.5
+  simbench watch monday                               what simbench record writes, of a real rig
   simbench watch rig.csv --format json --on-event 'logger "$SIMBENCH_EVENT_TEXT"'
   simbench watch rig.csv --page                       the same in a browser, and for Prometheus
   simbench watch rig.csv --for-s 3600 --until-alarm   in a script: how did the hour end?
@@ -207,8 +208,9 @@ int run_watch(const WatchArguments& arguments) {
 void add_watch_command(CommandLine& line) {
   auto options = std::make_shared<WatchArguments>();
   Command command(line, "watch", "Watch cameras and clocks while their files grow");
-  command.texts("recordings", "FILE.csv...", options->recordings,
-                "CSV recordings that are appended to, as `simbench diagnose` takes them");
+  command.texts("recordings", "INPUT...", options->recordings,
+                "CSV recordings that are appended to, as `simbench diagnose` takes them, and "
+                "folders\nthat `simbench record` is writing");
   add_input_options(command, options->reading);
   command.texts("--clock-log", "[HOST=]FILE", options->clock_logs,
                 "A log of a host's clock that is appended to, of any form that `simbench "

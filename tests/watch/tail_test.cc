@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/scratch_folder.h"
+#include "watch/folder_text.h"
 #include "watch/grown_stamps.h"
 
 namespace simbench::watch {
@@ -159,6 +160,34 @@ TEST_F(TailTest, ALogOfChronyIsReadOnce) {
     EXPECT_EQ(found.problem, "");
   }
   EXPECT_EQ(points, 40u);
+}
+
+// Captures of a recording folder follow one another, each with its heading.
+TEST_F(TailTest, ARecordingFolderIsReadCaptureByCapture) {
+  const std::string heading =
+      "order,camera,stream,domain,counter,exposure_us,sensor_us,frame_us,backend_ns,arrival_ns,"
+      "arrival_steady_ns\n";
+  GrownFrames frames(std::make_unique<FolderText>(folder_.path().string()), FolderText::columns());
+  EXPECT_TRUE(frames.poll().streams.empty());
+  for (const char* const seed : {"1", "2"}) {
+    const fs::path capture = folder_.path() / "pipeline" / seed;
+    fs::create_directories(capture);
+    std::ofstream file(capture / "frames.csv");
+    file << heading;
+    std::size_t read = 0;
+    for (int pulse = 0; pulse < 200; ++pulse) {
+      for (int camera = 0; camera < 2; ++camera) {
+        file << 2 * pulse + camera << "," << camera << ",depth,hardware_clock," << pulse << ",8000,"
+             << 1000 + pulse * 33333 << "," << 1010 + pulse * 33333 << ",,"
+             << 1'000'000'000LL + pulse * 33'333'333LL << ",5\n";
+      }
+      file.flush();
+      if (pulse % 10 != 9) continue;
+      for (const RecordedStream& stream : frames.poll().streams) read += stream.frames.size();
+    }
+    for (const RecordedStream& stream : frames.poll().streams) read += stream.frames.size();
+    EXPECT_EQ(read, 400u) << seed;
+  }
 }
 
 TEST_F(TailTest, RowsThatCannotBeReadAreAProblemAndNoEnd) {
