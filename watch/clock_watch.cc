@@ -20,7 +20,7 @@ namespace {
 using evaluation::ClockLogPoint;
 
 constexpr std::size_t kNeighbours = 33;  // differences that a step is compared with
-constexpr std::size_t kOutliers = 4;     // of these, at most
+constexpr std::size_t kOutliers = 2;     // of these, one that comes and goes
 
 double log_seconds(const ClockLogPoint& point) {
   return std::chrono::duration<double>(point.time).count();
