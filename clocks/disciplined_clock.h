@@ -75,13 +75,15 @@ inline constexpr double kNeverNs = 2e18;
 inline constexpr double kFarEndNs = 8.64e13;
 
 // The instant at which the oscillator has counted `local_ns` more than at `anchor`, to about 1 ns.
+// `guess_ns`: how much more than the time that has passed, about; a good one saves looks.
 template <Oscillator O>
 typename O::Instant instant_after(const O& oscillator, typename O::Instant anchor,
-                                  double anchor_deviation_ns, double local_ns) {
+                                  double anchor_deviation_ns, double local_ns,
+                                  double guess_ns = 0) {
   // Each pass multiplies what is wrong by the frequency error, which is far below 1e-2. The first
   // guess needs no look at the anchor, which an oscillator may find far from where it is used.
   constexpr int kPasses = 5;
-  typename O::Instant t = anchor + from_ns(local_ns);
+  typename O::Instant t = anchor + from_ns(local_ns - guess_ns);
   for (int pass = 0; pass < kPasses; ++pass) {
     const double ahead_ns = oscillator.deviation_ns(t) - anchor_deviation_ns;
     const typename O::Instant before = std::exchange(t, anchor + from_ns(local_ns - ahead_ns));
@@ -118,17 +120,17 @@ Instant first_instant(Instant guess, Predicate reached) {
 }
 
 // The first instant at which the steady clock, which read `zero_reading` at `zero`, reads `at` or
-// more. The oscillator's deviation counts from `zero`.
+// more. The oscillator's deviation counts from `zero`; `guess_ns` is about what it is then.
 template <Oscillator O>
 typename O::Instant when_steady(const O& oscillator, typename O::Instant zero,
-                                SteadyTime zero_reading, SteadyTime at) {
+                                SteadyTime zero_reading, SteadyTime at, double guess_ns = 0) {
   using Instant = typename O::Instant;
   const double about_ns =
       static_cast<double>(nanoseconds_of(at)) - static_cast<double>(nanoseconds_of(zero_reading));
   if (about_ns > kNeverNs) return Instant::max();
   if (about_ns < -kNeverNs) return Instant::min();
   const auto local_ns = static_cast<double>((at - zero_reading).count());
-  return first_instant(instant_after(oscillator, zero, 0, local_ns),
+  return first_instant(instant_after(oscillator, zero, 0, local_ns, guess_ns),
                        [&](Instant t) { return oscillator.steady(t) >= at; });
 }
 

@@ -45,24 +45,33 @@ class Xoshiro256PlusPlus {
  public:
   using State = std::array<std::uint64_t, 4>;
   using result_type = std::uint64_t;
-  constexpr explicit Xoshiro256PlusPlus(const State& state) : state_(state) {}
+  constexpr explicit Xoshiro256PlusPlus(const State& state)
+      : a_(state[0]), b_(state[1]), c_(state[2]), d_(state[3]) {}
+  // Its state are the next four words.
+  [[gnu::always_inline]] constexpr explicit Xoshiro256PlusPlus(SplitMix64 words)
+      : a_(words()), b_(words()), c_(words()), d_(words()) {}
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
 
   constexpr std::uint64_t operator()() {
-    const std::uint64_t result = std::rotl(state_[0] + state_[3], 23) + state_[0];
-    const std::uint64_t shifted = state_[1] << 17;
-    state_[2] ^= state_[0];
-    state_[3] ^= state_[1];
-    state_[1] ^= state_[2];
-    state_[0] ^= state_[3];
-    state_[2] ^= shifted;
-    state_[3] = std::rotl(state_[3], 45);
+    const std::uint64_t result = std::rotl(a_ + d_, 23) + a_;
+    const std::uint64_t shifted = b_ << 17;
+    c_ ^= a_;
+    d_ ^= b_;
+    b_ ^= c_;
+    a_ ^= d_;
+    c_ ^= shifted;
+    d_ = std::rotl(d_, 45);
     return result;
   }
 
  private:
-  State state_;
+  // Words by themselves: an array that was just written word by word and is copied as a whole makes
+  // the processor wait for it.
+  std::uint64_t a_;
+  std::uint64_t b_;
+  std::uint64_t c_;
+  std::uint64_t d_;
 };
 
 // The upper 53 bits of a word as a number in [0, 1), a multiple of 2^-53.

@@ -49,10 +49,8 @@ void LowerHull::add(LinePoint point) {
   vertices_.push_back(point);
 }
 
-WindowHull::WindowHull(std::size_t capacity) : capacity_(capacity), older_hull_(capacity) {
+WindowHull::WindowHull(std::size_t capacity) : capacity_(capacity) {
   SIMBENCH_ASSERT(capacity > 0, "a window holds a point");
-  older_.reserve(capacity);
-  newer_.reserve(capacity);
 }
 
 void WindowHull::push(LinePoint point) {
@@ -79,6 +77,7 @@ void WindowHull::clear() {
 
 void WindowHull::rebuild_older() {
   older_vertices_ = 0;
+  older_hull_.resize(std::max(older_hull_.size(), newer_.size()));
   for (std::size_t i = newer_.size(); i-- > 0;) {
     const LinePoint point = newer_[i];
     std::size_t place = older_vertices_;

@@ -112,7 +112,7 @@ auto middle_line(const Vertices& vertices,
 // The hull of all is the two joined at their common tangent.
 //
 // Complexity: push and pop amortised O(1) (a rebuild of n points once in n pops), hull() O(number
-// of vertices). Memory: 3 * capacity points, allocated when made. Points and arithmetic as in
+// of vertices). Memory: up to 3 * capacity points, as they come. Points and arithmetic as in
 // LowerHull, but no vertex is thinned out.
 //
 //   WindowHull window(300);

@@ -87,6 +87,11 @@ struct DatagramLaw {
   double reorder_probability = 0;
   double reorder_max_ms = 0;
 
+  // Whether all datagrams arrive once and in order.
+  bool is_none() const {
+    return loss_probability <= 0 && duplicate_probability <= 0 && reorder_probability <= 0;
+  }
+
   template <class Draws>
   DatagramFate draw(Draws& draws) const {
     return {.is_lost = draws.chance(loss_probability),

@@ -16,27 +16,24 @@ std::string MessageStamps::lacking() const {
 }
 
 Task<std::optional<std::int64_t>> MessageStamps::departure(MessageChannel& channel, MessageId id) {
-  const std::optional<std::int64_t> stamp = co_await stamp_of(channel, id);
+  std::optional<std::int64_t> stamp;
+  if (source_ == StampSource::kProgram) {
+    const HostTime now = co_await host_.clock().now();
+    stamp = nanoseconds_of(now);
+  } else {
+    const SteadyTime deadline = host_.steady_clock().now() + kStampTimeout;
+    if (source_ == StampSource::kCard) {
+      const std::optional<HardwareTime> by_card =
+          co_await channel.hardware_transmit_stamp(id, deadline);
+      if (by_card) stamp = nanoseconds_of(*by_card);
+    } else {
+      const std::optional<HostTime> by_kernel = co_await channel.transmit_stamp(id, deadline);
+      if (by_kernel) stamp = nanoseconds_of(*by_kernel);
+    }
+  }
   if (stamp) unstamped_ = -1;
   if (!stamp && unstamped_ >= 0) ++unstamped_;
   co_return stamp;
-}
-
-Task<std::optional<std::int64_t>> MessageStamps::stamp_of(MessageChannel& channel, MessageId id) {
-  if (source_ == StampSource::kProgram) {
-    const HostTime now = co_await host_.clock().now();
-    co_return nanoseconds_of(now);
-  }
-  const SteadyTime deadline = host_.steady_clock().now() + kStampTimeout;
-  if (source_ == StampSource::kCard) {
-    const std::optional<HardwareTime> stamp =
-        co_await channel.hardware_transmit_stamp(id, deadline);
-    if (!stamp) co_return std::nullopt;
-    co_return nanoseconds_of(*stamp);
-  }
-  const std::optional<HostTime> stamp = co_await channel.transmit_stamp(id, deadline);
-  if (!stamp) co_return std::nullopt;
-  co_return nanoseconds_of(*stamp);
 }
 
 std::optional<std::int64_t> MessageStamps::arrival(const ReceivedMessage& message) const {

@@ -48,8 +48,6 @@ class MessageStamps {
   std::optional<std::int64_t> arrival(const ReceivedMessage& message) const;
 
  private:
-  Task<std::optional<std::int64_t>> stamp_of(MessageChannel& channel, MessageId id);
-
   Host& host_;
   StampSource source_;
   int unstamped_ = 0;  // departures since the beginning; negative once one was stamped

@@ -57,6 +57,7 @@ class EvaluationRun {
   Results run_to(std::uint64_t seeds, Results known) {
     const std::uint64_t first = known.seed_count;
     take_back(std::move(known), seeds);
+    whole_seeds_ = seeds_of_one_job(seeds - first);
     parts_.emplace(progress_,
                    part_plan(groups_of_programs(), seeds - first, worker_count(options_.jobs)));
     const auto begin = std::chrono::steady_clock::now();
@@ -65,8 +66,8 @@ class EvaluationRun {
     };
     try {
       const bool finished = run_jobs_with_workers(
-          groups_.size() * (seeds - first), {.threads = options_.jobs, .cancel = options_.cancel},
-          [this, first]() -> Job {
+          whole_seeds_ + (seeds - first - whole_seeds_) * groups_.size(),
+          {.threads = options_.jobs, .cancel = options_.cancel}, [this, first]() -> Job {
             return
                 [this, first,
                  worker = std::make_shared<TimedWorker<RecordingSource>>(cpu_time_, make_source_)](
@@ -105,16 +106,37 @@ class EvaluationRun {
     done_ = choices_.size() * known.seed_count;
   }
 
-  // A capture and the scores of its pipelines. Jobs of one seed are neighbours, so that the
-  // remaining time follows from the elapsed time.
+  // How many of these seeds, from the first on, are a job each. A source makes once for a seed what
+  // its runs share, so one thread runs them all; the last seeds keep all threads busy until the
+  // end. Runs of programs, which take long, are jobs of their own.
+  std::uint64_t seeds_of_one_job(std::uint64_t seeds) const {
+    const std::uint64_t shared_out = worker_count(options_.jobs);
+    const std::vector<bool> of_programs = groups_of_programs();
+    const bool has_programs = std::ranges::find(of_programs, true) != of_programs.end();
+    return has_programs || seeds < shared_out ? 0 : seeds - shared_out;
+  }
+
+  // Runs are numbered seed by seed, from the seed number `first` on. Jobs begin in their order, so
+  // that the remaining time follows from the elapsed time.
   void run_job(std::size_t job, std::uint64_t first, RecordingSource& source) {
-    const std::vector<std::size_t>& group = groups_[order_[job % groups_.size()]];
-    const std::uint64_t number = first + job / groups_.size();
+    if (job >= whole_seeds_) {
+      return run_group(whole_seeds_ * groups_.size() + job - whole_seeds_, first, source);
+    }
+    for (std::size_t group = 0; group < groups_.size(); ++group) {
+      if (options_.cancel != nullptr && *options_.cancel) throw RecordingCancelled();
+      run_group(job * groups_.size() + group, first, source);
+    }
+  }
+
+  // A capture and the scores of its pipelines.
+  void run_group(std::size_t number_of_run, std::uint64_t first, RecordingSource& source) {
+    const std::vector<std::size_t>& group = groups_[order_[number_of_run % groups_.size()]];
+    const std::uint64_t number = first + number_of_run / groups_.size();
     const std::uint64_t seed = options_.first_seed + number;
     SharedCapture capture(scenario_, choices_, group, seed);
-    parts_->begin(job);
-    capture.record(source, parts_->share_of(job));
-    parts_->end(job);
+    parts_->begin(number_of_run);
+    capture.record(source, parts_->share_of(number_of_run));
+    parts_->end(number_of_run);
     for (std::size_t member = 0; member < group.size(); ++member) {
       std::optional<SeedScore>& score = scores_[number * choices_.size() + group[member]];
       run_named({scenario_.name, choices_[group[member]].pipeline.name, seed}, [&] {
@@ -211,6 +233,7 @@ class EvaluationRun {
   const std::vector<PipelineChoice> choices_;
   const CaptureGroups groups_;
   const std::vector<std::size_t> order_;  // in which the groups of a seed run
+  std::uint64_t whole_seeds_ = 0;         // that are a job each
   std::optional<PartProgress> parts_;
   std::uint64_t seeds_ = 0;  // of the rows
   // By seed, then by choice; each written by one worker.

@@ -1,9 +1,10 @@
 // Many seeds, many pipelines, all cores: from a scenario and a backend to Results.
 //
-// Each (pipeline, seed) is one job: one recording, streamed into a scorer. In a simulated world
+// Each (pipeline, seed) is one run: one recording, streamed into a scorer. In a simulated world
 // pipelines whose captures would be the same (evaluation/run/capture_groups.h) can share one, and
-// with it a job; Results::performance counts it once. Jobs run on `jobs` threads; results do not
-// depend on their number, nor on what is shared. A job that throws ends the evaluation after the
+// with it a run; Results::performance counts it once. Runs are jobs on `jobs` threads, those of a
+// seed one job together while there are seeds enough for all threads; results do not depend on
+// their number, nor on what is shared. A job that throws ends the evaluation after the
 // running jobs have finished; the error holds the finished jobs (EvaluationFailed). A capture that
 // could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing from its
 // row, whose notes have the reason and the notes of other captures (RecordingCost::notes).
@@ -43,7 +44,7 @@ struct EvaluationOptions {
   bool keep_pulses = false;
   // Whether pipelines that the source records alike share a capture.
   bool share_captures = false;
-  // A flag that is polled before each job; once true, no further job begins. A signal handler may
+  // A flag that is polled before each run; once true, no further run begins. A signal handler may
   // set it.
   const std::atomic<bool>* cancel = nullptr;
 };

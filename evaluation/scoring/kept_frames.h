@@ -38,7 +38,12 @@ class FrameBlock {
   void add(std::uint32_t camera, const DeviceSample& sample, std::int64_t pulse,
            GlobalTime delivered) {
     cameras_[size_] = camera;
-    samples_[size_] = sample;
+    // Member by member: a copy of the whole would wait for the members that were just written.
+    DeviceSample& kept = samples_[size_];
+    kept.sensor = sample.sensor;
+    kept.arrival = sample.arrival;
+    kept.arrival_steady = sample.arrival_steady;
+    kept.exposure_us = sample.exposure_us;
     GatherFrame& frame = frames_[size_++];
     frame.source = camera;
     frame.arrival = delivered;

@@ -12,20 +12,45 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "algorithms/ports/time.h"
 
 namespace simbench::sim {
 
-// The largest phase + n * unit that is not after t; t itself if the unit is 0.
-template <class Time>
-constexpr Time round_down(Time t, Nanoseconds unit, Nanoseconds phase = {}) {
-  if (unit.count() == 0) return t;
-  const std::int64_t since_phase = (t.time_since_epoch() - phase).count();
-  const std::int64_t part = since_phase % unit.count();
-  const Nanoseconds above{part < 0 ? part + unit.count() : part};
-  return t - above;
-}
+// A unit to which times are rounded down; 0: they stay as they are. Clocks round each reading, so
+// the division is a multiplication by a reciprocal that is known before.
+class Granularity {
+ public:
+  constexpr Granularity() : Granularity(Nanoseconds(0)) {}
+  constexpr explicit Granularity(Nanoseconds unit)
+      : unit_(static_cast<std::uint64_t>(unit.count())),
+        reciprocal_(unit_ == 0 ? 0 : std::numeric_limits<std::uint64_t>::max() / unit_) {}
+
+  // The largest phase + n * unit that is not after t.
+  template <class Time>
+  constexpr Time round_down(Time t, Nanoseconds phase = {}) const {
+    if (unit_ == 0) return t;
+    return t - Nanoseconds(above((t.time_since_epoch() - phase).count()));
+  }
+
+ private:
+  __extension__ using Wide = unsigned __int128;
+
+  // How far `ns` is above a multiple of the unit.
+  constexpr std::int64_t above(std::int64_t ns) const {
+    // A negative one is counted down from -1, so that the number to divide is below 2^63. Then the
+    // quotient is too small by 1 at most.
+    const std::uint64_t n = static_cast<std::uint64_t>(ns < 0 ? ~ns : ns);
+    const auto quotient = static_cast<std::uint64_t>((static_cast<Wide>(n) * reciprocal_) >> 64);
+    std::uint64_t part = n - quotient * unit_;
+    if (part >= unit_) part -= unit_;
+    return static_cast<std::int64_t>(ns < 0 ? unit_ - 1 - part : part);
+  }
+
+  std::uint64_t unit_;
+  std::uint64_t reciprocal_;
+};
 
 class ClockInterface {
  public:
@@ -33,16 +58,16 @@ class ClockInterface {
       : tick_(tick), tick_phase_(tick_phase), resolution_(resolution) {}
 
   // The reading of the clock's own counter, used for the kernel's stamps.
-  constexpr HostTime tick_of(HostTime exact) const { return round_down(exact, tick_, tick_phase_); }
+  constexpr HostTime tick_of(HostTime exact) const { return tick_.round_down(exact, tick_phase_); }
   // The reading that a get call returns.
-  constexpr HostTime read(HostTime exact) const { return round_down(tick_of(exact), resolution_); }
+  constexpr HostTime read(HostTime exact) const { return resolution_.round_down(tick_of(exact)); }
   // The setting after a set call with this value.
-  constexpr HostTime set_to(HostTime value) const { return round_down(value, resolution_); }
+  constexpr HostTime set_to(HostTime value) const { return resolution_.round_down(value); }
 
  private:
-  Nanoseconds tick_;
+  Granularity tick_;
   Nanoseconds tick_phase_;
-  Nanoseconds resolution_;
+  Granularity resolution_;
 };
 
 }  // namespace simbench::sim

@@ -7,9 +7,11 @@
 // world starts.
 //
 // Units: nanoseconds. Complexity: O(1) once the steps between true zero and the query are sampled
-// and while the queries stay near each other. Steps are kept where the queries are, some 64 KiB in
-// each direction, and of all others the state at every 4096th, from which they are sampled anew:
-// service of many hours on a fine grid needs time, not memory.
+// and while the queries stay near each other. The last `kept_blocks` of 4096 steps (32 KiB) that
+// were sampled in a direction are kept, and of all others the state at their beginning, from which
+// they are sampled anew: service of many hours on a fine grid needs time, not memory.
+//
+// Copies share the steps that were sampled, so they are for one thread together.
 //
 //   GridWalk<double> walk(step_ns, frequency_at_zero);
 //   double ns = walk.phase_ns(t_ns, [&](double& frequency, std::int64_t index, double sign) {
@@ -21,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "algorithms/ports/time.h"
@@ -30,9 +33,12 @@ namespace simbench::sim {
 template <class State>
 class GridWalk {
  public:
+  static constexpr std::size_t kFewestBlocks = 2;
+
   GridWalk() = default;
-  GridWalk(std::int64_t step_ns, const State& at_zero)
-      : step_ns_(step_ns), forward_(at_zero), backward_(at_zero) {}
+  GridWalk(std::int64_t step_ns, const State& at_zero, std::size_t kept_blocks = kFewestBlocks)
+      : step_ns_(step_ns),
+        sides_(std::make_shared<Sides>(at_zero, std::max(kept_blocks, kFewestBlocks))) {}
 
   std::int64_t step_ns() const { return step_ns_; }
 
@@ -54,15 +60,25 @@ class GridWalk {
     double phase_ns = 0;
     State state{};
   };
-  // One direction of time. phases_ns[i] belongs to the grid point at distance first + i.
-  struct Side {
-    Side() = default;
-    explicit Side(const State& at_zero)
-        : phases_ns{0.0}, state(at_zero), saved{Point{0.0, at_zero}} {}
-    std::size_t first = 0;  // a multiple of kBlock
+  // Phases of the grid points from the block's first on, to the next block's first at most; empty:
+  // not kept.
+  struct Block {
     std::vector<double> phases_ns;
-    State state{};             // at the last of these points
-    std::vector<Point> saved;  // every kBlock-th, as far as they were sampled
+    State state{};  // at the last of them
+  };
+  // One direction of time; grid points are numbered by their distance from zero.
+  struct Side {
+    explicit Side(const State& at_zero) : saved{Point{0.0, at_zero}} {}
+    std::vector<Point> saved;  // the first of each block, as far as they were sampled
+    std::vector<Block> blocks;
+    std::vector<std::size_t> kept;  // blocks, in the order in which they were begun
+  };
+  struct Sides {
+    Sides(const State& at_zero, std::size_t most)
+        : forward(at_zero), backward(at_zero), kept_blocks(most) {}
+    Side forward;
+    Side backward;
+    std::size_t kept_blocks;
   };
 
   // The step of the grid that the last query met: most meet it again.
@@ -80,54 +96,64 @@ class GridWalk {
   template <class Step>
   void look_up(std::int64_t index, const Step& step) const {
     const bool forward = index >= 0;
-    Side& side = forward ? forward_ : backward_;
+    Side& side = forward ? sides_->forward : sides_->backward;
     // The grid points around the step, by their distance from zero: `inner` and the next.
     const auto inner = static_cast<std::size_t>(forward ? index : -index - 1);
-    std::size_t at = inner - side.first;
-    // Also where `inner` lies before the first one kept.
-    if (at >= side.phases_ns.size() - 1) at = reach(side, inner, forward, step);
-    const double inner_ns = side.phases_ns[at];
-    const double outer_ns = side.phases_ns[at + 1];
+    const std::size_t at = inner % kBlock;
+    if (inner / kBlock >= side.blocks.size() ||
+        at + 1 >= side.blocks[inner / kBlock].phases_ns.size()) {
+      reach(side, inner, forward, step);
+    }
+    const std::vector<double>& phases_ns = side.blocks[inner / kBlock].phases_ns;
+    const double inner_ns = phases_ns[at];
+    const double outer_ns = phases_ns[at + 1];
     cell_ = {.begin_ns = index * step_ns_,
              .phase_ns = forward ? inner_ns : outer_ns,
              .growth_ns = forward ? outer_ns - inner_ns : inner_ns - outer_ns};
   }
 
-  // Samples the points at `inner` and the next; returns the place of `inner`. Out of the hot path.
+  // Samples the points at `inner` and the next. Out of the hot path.
   template <class Step>
-  [[gnu::noinline]] std::size_t reach(Side& side, std::size_t inner, bool forward,
-                                      const Step& step) const {
-    const std::size_t block = std::min(inner / kBlock, side.saved.size() - 1);
-    const bool is_kept = inner >= side.first;
-    if (!is_kept || block * kBlock > side.first + side.phases_ns.size()) {
-      side.first = block * kBlock;
-      side.phases_ns.assign(1, side.saved[block].phase_ns);
-      side.state = side.saved[block].state;
+  [[gnu::noinline]] void reach(Side& side, std::size_t inner, bool forward,
+                               const Step& step) const {
+    const std::size_t block = inner / kBlock;
+    while (side.saved.size() <= block) {
+      const std::size_t last = side.saved.size() - 1;
+      extend(side, last, kBlock, forward, step);
+      side.saved.push_back({side.blocks[last].phases_ns.back(), side.blocks[last].state});
     }
-    while (side.first + side.phases_ns.size() <= inner + 1) extend(side, forward, step);
-    return inner - side.first;
+    extend(side, block, inner % kBlock + 1, forward, step);
   }
 
+  // Samples the block up to its point `end`.
   template <class Step>
-  void extend(Side& side, bool forward, const Step& step) const {
-    if (side.phases_ns.size() == 2 * kBlock) {
-      side.phases_ns.erase(side.phases_ns.begin(), side.phases_ns.begin() + kBlock);
-      side.first += kBlock;
-    }
-    const auto last = static_cast<std::int64_t>(side.first + side.phases_ns.size() - 1);
+  void extend(Side& side, std::size_t number, std::size_t end, bool forward,
+              const Step& step) const {
+    if (side.blocks.size() <= number) side.blocks.resize(number + 1);
+    if (side.blocks[number].phases_ns.empty()) begin(side, number);
+    Block& block = side.blocks[number];
+    std::vector<double>& phases_ns = block.phases_ns;
+    if (end == kBlock) phases_ns.reserve(kBlock + 1);
     const double sign = forward ? 1.0 : -1.0;
-    const double change_ns = step(side.state, forward ? last : -last - 1, sign);
-    side.phases_ns.push_back(side.phases_ns.back() + sign * change_ns);
-    const auto place = static_cast<std::size_t>(last) + 1;
-    if (place == side.saved.size() * kBlock) {
-      side.saved.push_back({side.phases_ns.back(), side.state});
+    while (phases_ns.size() <= end) {
+      const auto last = static_cast<std::int64_t>(number * kBlock + phases_ns.size() - 1);
+      const double change_ns = step(block.state, forward ? last : -last - 1, sign);
+      phases_ns.push_back(phases_ns.back() + sign * change_ns);
     }
+  }
+
+  void begin(Side& side, std::size_t number) const {
+    if (side.kept.size() == sides_->kept_blocks) {
+      side.blocks[side.kept.front()] = {};
+      side.kept.erase(side.kept.begin());
+    }
+    side.kept.push_back(number);
+    side.blocks[number] = {{side.saved[number].phase_ns}, side.saved[number].state};
   }
 
   std::int64_t step_ns_ = 0;
-  mutable Cell cell_;  // caches: values are functions of the index alone
-  mutable Side forward_;
-  mutable Side backward_;
+  mutable Cell cell_;             // caches: values are functions of the index alone
+  std::shared_ptr<Sides> sides_;  // null without a grid
 };
 
 }  // namespace simbench::sim

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "algorithms/ports/assert.h"
@@ -18,7 +19,7 @@ constexpr double kCoarsestStepMs = 100.0;
 }  // namespace
 
 FlickerNoise::FlickerNoise(double floor_ppb, double step_ms, std::uint64_t run_seed,
-                           std::string_view component)
+                           std::string_view component, std::size_t kept_blocks)
     : steps_(run_seed, ComponentKey(std::string(component) + ": flicker")) {
   const std::int64_t step_ns = from_ms(std::min(step_ms, kCoarsestStepMs)).count();
   const double step_s = static_cast<double>(step_ns) * 1e-9;
@@ -41,7 +42,7 @@ FlickerNoise::FlickerNoise(double floor_ppb, double step_ms, std::uint64_t run_s
   RandomStream draw(run_seed, std::string(component) + ": flicker at zero");
   Frequencies at_zero{};
   for (double& frequency : at_zero) frequency = draw.normal(floor_ppb);
-  walk_ = GridWalk<Frequencies>(step_ns, at_zero);
+  walk_ = GridWalk<Frequencies>(step_ns, at_zero, kept_blocks);
 }
 
 double FlickerNoise::phase_ns(std::int64_t since_zero_ns) const {
@@ -72,7 +73,8 @@ constexpr double kMostWalkPpb = scenarios::kMostFrequencyError * 1e9;
 }  // namespace
 
 OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::uint64_t run_seed,
-                                 std::string_view component, TrueTime switched_on)
+                                 std::string_view component, TrueTime switched_on,
+                                 std::size_t kept_blocks)
     : skew_(RandomStream(run_seed, std::string(component) + ": skew")
                 .normal(parameters.skew_sigma_ppm * 1e-6)),
       ramp_per_s_(parameters.ramp_ppm_per_hour * kPerPpmPerHour),
@@ -83,14 +85,15 @@ OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::u
   SIMBENCH_ASSERT(heating_ == 0 || heating_time_constant_s_ > 0, "heating takes time");
   if (parameters.flicker_floor_ppb > 0) {
     SIMBENCH_ASSERT(parameters.wander_step_ms > 0, "noise needs a grid to be sampled on");
-    flicker_ = std::make_unique<const FlickerNoise>(parameters.flicker_floor_ppb,
-                                                    parameters.wander_step_ms, run_seed, component);
+    flicker_ = std::make_shared<const FlickerNoise>(
+        parameters.flicker_floor_ppb, parameters.wander_step_ms, run_seed, component, kept_blocks);
   }
   const double white_ppb = parameters.white_frequency_ppb;
   const double walk_ppb = parameters.random_walk_ppb_per_sqrt_s;
   if (white_ppb != 0 || walk_ppb != 0) {
     SIMBENCH_ASSERT(parameters.wander_step_ms > 0, "noise needs a grid to be sampled on");
-    walk_ = GridWalk<double>(from_ms(parameters.wander_step_ms).count(), 0.0);
+    walk_ = GridWalk<double>(from_ms(parameters.wander_step_ms).count(), 0.0, kept_blocks);
+    first_cut_ = std::make_shared<std::int64_t>(std::numeric_limits<std::int64_t>::max());
     step_s_ = static_cast<double>(walk_.step_ns()) * 1e-9;
     walk_sigma_ppb_ = walk_ppb * std::sqrt(step_s_);
     // Given the frequency at both ends of a step, the integral of a random walk is normal around
@@ -103,7 +106,7 @@ OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::u
 
 void OscillatorModel::set_temperature(const TemperatureCourse& course,
                                       double coefficient_ppb_per_k) {
-  temperature_ = std::make_unique<const TemperatureCourse>(course);
+  temperature_ = std::make_shared<const TemperatureCourse>(course);
   coefficient_ppb_per_k_ = coefficient_ppb_per_k;
   is_steady_ = false;
 }
@@ -149,7 +152,7 @@ double OscillatorModel::ramp_end_s() const {
 bool OscillatorModel::reached_limit(TrueTime end) const {
   const std::int64_t end_ns = end.time_since_epoch().count();
   if (ramp_per_s_ != 0 && static_cast<double>(end_ns) * 1e-9 >= ramp_end_s()) return true;
-  return walk_.step_ns() != 0 && first_cut_ < floor_div(end_ns, walk_.step_ns());
+  return walk_.step_ns() != 0 && *first_cut_ < floor_div(end_ns, walk_.step_ns());
 }
 
 double OscillatorModel::ramp_ns(double since_zero_s) const {
@@ -163,7 +166,7 @@ double OscillatorModel::step(double& frequency_ppb, std::int64_t index, double s
   const double before_ppb = frequency_ppb;
   const double free_ppb = before_ppb + sign * draw.normal(walk_sigma_ppb_);
   frequency_ppb = std::clamp(free_ppb, -kMostWalkPpb, kMostWalkPpb);
-  if (frequency_ppb != free_ppb) first_cut_ = std::min(first_cut_, index);
+  if (frequency_ppb != free_ppb) *first_cut_ = std::min(*first_cut_, index);
   return (before_ppb + frequency_ppb) / 2 * step_s_ + draw.normal(phase_sigma_ns_);
 }
 

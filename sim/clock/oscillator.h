@@ -26,7 +26,7 @@
 // Units: nanoseconds; skew as a fraction. The phase is exact to well below 1 ns over days: a rate
 // of 1e-9 survives. Complexity: O(1) without noise; otherwise a look-up, after each step of the
 // grid between true zero and the query has once been sampled (some 20 ns each, some 120 ns with
-// flicker; memory: grid_walk.h).
+// flicker; memory: grid_walk.h). Copies share what was sampled, for one thread.
 // Source: docs/design.md sections 5 to 7; Riley, "Handbook of Frequency Stability Analysis", NIST
 // SP 1065.
 //
@@ -35,8 +35,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -63,8 +63,8 @@ namespace simbench::sim {
 class FlickerNoise {
  public:
   // `floor_ppb`: the Allan deviation. The grid is `step_ms`, or 100 ms if that is finer.
-  FlickerNoise(double floor_ppb, double step_ms, std::uint64_t run_seed,
-               std::string_view component);
+  FlickerNoise(double floor_ppb, double step_ms, std::uint64_t run_seed, std::string_view component,
+               std::size_t kept_blocks);
 
   // Local minus true time elapsed since true zero, as far as this noise makes it.
   double phase_ns(std::int64_t since_zero_ns) const;
@@ -90,12 +90,15 @@ class FlickerNoise {
 
 class OscillatorModel {
  public:
-  // Draws the skew and the noise of the component with this name.
+  // Draws the skew and the noise of the component with this name. `kept_blocks`: grid_walk.h.
   OscillatorModel(const scenarios::Oscillator& parameters, std::uint64_t run_seed,
-                  std::string_view component, TrueTime switched_on = TrueTime{});
+                  std::string_view component, TrueTime switched_on = TrueTime{},
+                  std::size_t kept_blocks = GridWalk<double>::kFewestBlocks);
   // An oscillator of this frequency error and no noise.
   explicit OscillatorModel(double skew) : skew_(skew) {}
 
+  // Whether the constant part is all there is: it costs a multiplication then.
+  bool is_steady() const { return is_steady_; }
   // The constant part of the frequency error, as a fraction (1e-6 = 1 ppm).
   double skew() const { return skew_; }
 
@@ -129,8 +132,8 @@ class OscillatorModel {
   // What each query needs, together in the cache, up to the beginning of the walk.
   double skew_ = 0;
   bool is_steady_ = true;                        // skew is all there is
-  std::unique_ptr<const FlickerNoise> flicker_;  // large, and rarely there
-  std::unique_ptr<const TemperatureCourse> temperature_;
+  std::shared_ptr<const FlickerNoise> flicker_;  // large, and rarely there
+  std::shared_ptr<const TemperatureCourse> temperature_;
   double ramp_per_s_ = 0;
   double heating_ = 0;
   GridWalk<double> walk_;  // the state is the walking frequency in ppb
@@ -140,7 +143,7 @@ class OscillatorModel {
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
   KeyedStreams wander_{0, ComponentKey("")};
   // The first step of the grid at which the walk was cut; a cache, as the walk is.
-  mutable std::int64_t first_cut_ = std::numeric_limits<std::int64_t>::max();
+  std::shared_ptr<std::int64_t> first_cut_;
   double heating_time_constant_s_ = 0;
   TrueTime switched_on_{};
   double coefficient_ppb_per_k_ = 0;

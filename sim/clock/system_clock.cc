@@ -21,7 +21,8 @@ SystemClock::SystemClock(std::uint32_t host, OscillatorModel oscillator, Nanosec
 
 TrueTime SystemClock::when(SteadyTime at) const {
   const HostOscillator& oscillator = clock_->oscillator();
-  return clocks::when_steady(oscillator, TrueTime{}, oscillator.steady_epoch, at);
+  return clocks::when_steady(oscillator, TrueTime{}, oscillator.steady_epoch, at,
+                             oscillator.last_deviation_ns);
 }
 
 TrueTime SystemClock::when(HostTime at, TrueTime now) const { return clock_->when(at, now); }

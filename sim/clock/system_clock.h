@@ -34,8 +34,20 @@ struct HostOscillator {
   using Instant = TrueTime;
   SteadyTime steady_epoch{};
   OscillatorModel model;
+  // A cache: programs read their clocks several times in one instant. Not where a look costs less.
+  mutable TrueTime last_at = TrueTime::min();
+  mutable double last_deviation_ns = 0;
 
-  double deviation_ns(TrueTime t) const { return model.deviation_ns(t); }
+  double deviation_ns(TrueTime t) const {
+    return model.is_steady() ? model.deviation_ns(t) : remembered_deviation_ns(t);
+  }
+  double remembered_deviation_ns(TrueTime t) const {
+    if (t != last_at) {
+      last_deviation_ns = model.deviation_ns(t);
+      last_at = t;
+    }
+    return last_deviation_ns;
+  }
   SteadyTime steady(TrueTime t) const { return steady(t, deviation_ns(t)); }
   SteadyTime steady(TrueTime t, double deviation_ns) const {
     return steady_epoch + t.time_since_epoch() + from_ns_down(deviation_ns);

@@ -80,6 +80,7 @@ class EngineLimitReached : public std::runtime_error {
 class TimerId {
  public:
   TimerId() = default;
+  bool is_none() const { return slot_ == std::numeric_limits<std::uint32_t>::max(); }
 
  private:
   friend class Engine;

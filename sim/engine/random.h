@@ -129,13 +129,7 @@ class RandomStream {
 
  private:
   friend class KeyedStreams;
-  explicit RandomStream(KeyedStreams keyed) : generator_(expand(keyed.hash_)) {}
-  static Xoshiro256PlusPlus::State expand(std::uint64_t root) {
-    SplitMix64 words(root);
-    Xoshiro256PlusPlus::State state{};
-    for (std::uint64_t& word : state) word = words();
-    return state;
-  }
+  explicit RandomStream(KeyedStreams keyed) : generator_(SplitMix64(keyed.hash_)) {}
   static std::uint64_t word_in_field(std::uint64_t word);
   // By inversion of a word, so that a word moved a little moves the number a little.
   double normal_in_field();

@@ -12,14 +12,16 @@ PendingWait::PendingWait(VirtualContext& context, std::string_view label,
     : context_(context), label_(label), since_(context.engine_.now()), deadline_(deadline) {
   context_.waits_.push_back(*this);
   if (deadline_) {
-    timer_ = context_.engine_.call_at(std::max(*deadline_, since_),
-                                      [this] { complete(Outcome::kDeadline); });
+    timer_ = context_.engine_.call_at(std::max(*deadline_, since_), [this] {
+      timer_ = {};
+      complete(Outcome::kDeadline);
+    });
   }
 }
 
 PendingWait::~PendingWait() {
   if (point_ != nullptr) point_->wait_ = nullptr;
-  context_.engine_.cancel(timer_);
+  if (!timer_.is_none()) context_.engine_.cancel(timer_);
   context_.waits_.erase(context_.waits_.iterator_to(*this));
 }
 
@@ -28,8 +30,11 @@ void PendingWait::finish(Outcome outcome) {
   outcome_ = outcome;
   if (point_ != nullptr) std::exchange(point_, nullptr)->wait_ = nullptr;
   Engine& engine = context_.engine_;
-  engine.cancel(timer_);
-  timer_ = engine.call_at(engine.now(), [this] { complete(*outcome_); });
+  if (!timer_.is_none()) engine.cancel(timer_);
+  timer_ = engine.call_at(engine.now(), [this] {
+    timer_ = {};
+    complete(*outcome_);
+  });
 }
 
 std::string PendingWait::describe() const {

@@ -10,6 +10,8 @@ namespace {
 
 constexpr ComponentKey kHardwareTransmission("host: hardware transmit stamp");
 constexpr std::size_t kStampsKept = 4096;
+// SimHost::next_look() looks no earlier at a deadline that is far off.
+constexpr Nanoseconds kSoon = std::chrono::seconds(5);
 
 }  // namespace
 
@@ -36,40 +38,51 @@ void Departures::on_left(MessageId first, std::size_t count, const HostDeparture
   passed_.notify();
 }
 
-Task<std::optional<TrueTime>> Departures::reached(MessageId id, SteadyTime deadline,
-                                                  TrueTime HostDeparture::*part,
-                                                  WaitPoint& changed) {
-  while (!has_left(id)) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    co_await changed.wait(host_.next_look(deadline));
+void Departures::look(Search& search) const {
+  if (!search.at && has_left(search.id)) {
+    const Sent* message = sent(search.id);
+    if (message == nullptr) {
+      search.is_over = true;
+      return;
+    }
+    search.at = message->departure.*search.part;
   }
-  const Sent* message = sent(id);
-  if (message == nullptr) co_return std::nullopt;
-  const TrueTime at = message->departure.*part;
-  while (at > host_.true_now()) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    const std::optional<TrueTime> look = host_.next_look(deadline);
-    co_await changed.wait(look ? std::min(*look, at) : at);
+  search.is_over = search.at && *search.at <= host_.true_now();
+  if (search.is_over) return;
+  if (host_.is_past(search.deadline)) {
+    search.at.reset();
+    search.is_over = true;
+    return;
   }
-  co_return at;
+  search.look =
+      search.at ? next_look(search.deadline, *search.at) : host_.next_look(search.deadline);
+}
+
+TrueTime Departures::next_look(SteadyTime deadline, TrueTime at) const {
+  // Nearly always: then nobody needs to know when the steady clock reads the deadline.
+  const bool is_soon = at - host_.true_now() < kSoon;
+  if (is_soon && host_.system_clock().steady(at) < deadline) return at;
+  const std::optional<TrueTime> look = host_.next_look(deadline);
+  return look ? std::min(*look, at) : at;
 }
 
 Task<std::optional<HostTime>> Departures::stamp(MessageId id, SteadyTime deadline) {
   if (!stamps_in_kernel_) co_return std::nullopt;
-  const std::optional<TrueTime> at = co_await reached(id, deadline, &HostDeparture::stamped, left_);
-  if (!at) co_return std::nullopt;
-  co_return host_.clock_interface().tick_of(host_.system_clock().read(*at));
+  Search search{.id = id, .deadline = deadline, .part = &HostDeparture::stamped};
+  for (look(search); !search.is_over; look(search)) co_await left_.wait(search.look);
+  if (!search.at) co_return std::nullopt;
+  co_return host_.clock_interface().tick_of(host_.system_clock().read(*search.at));
 }
 
 Task<std::optional<HardwareTime>> Departures::hardware_stamp(MessageId id, SteadyTime deadline) {
   const NicClock* nic = host_.nic();
   if (nic == nullptr) co_return std::nullopt;
-  const std::optional<TrueTime> passed =
-      co_await reached(id, deadline, &HostDeparture::passed, passed_);
-  if (!passed) co_return std::nullopt;
+  Search search{.id = id, .deadline = deadline, .part = &HostDeparture::passed};
+  for (look(search); !search.is_over; look(search)) co_await passed_.wait(search.look);
+  if (!search.at) co_return std::nullopt;
   const MessageKey key = key_of_sent(id);
   RandomStream draw(host_.world().run_seed, kHardwareTransmission, key.direction, key.message);
-  co_return nic->stamp(*passed, draw);
+  co_return nic->stamp(*search.at, draw);
 }
 
 const Departures::Sent* Departures::sent(MessageId id) const {

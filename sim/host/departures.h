@@ -51,10 +51,19 @@ class Departures : protected Endpoint {
   bool has_left(MessageId id) const { return id < first_sent_ + sent_.size(); }
   // A message that has left; null if it never did or is no longer kept.
   const Sent* sent(MessageId id) const;
-  // When that part of the message's departure is over, which may be to come; nothing if that is
-  // not until the deadline, or the message did not leave.
-  Task<std::optional<TrueTime>> reached(MessageId id, SteadyTime deadline,
-                                        TrueTime HostDeparture::*part, WaitPoint& changed);
+  // What is known of a part of a message's departure, while a coroutine waits for it.
+  struct Search {
+    MessageId id;
+    SteadyTime deadline;
+    TrueTime HostDeparture::*part;
+    std::optional<TrueTime> at{};  // when it is over, once that is known
+    bool is_over = false;          // nothing more is to come; without `at` it did not leave in time
+    std::optional<TrueTime> look{};  // when to look again; none: not before something has left
+  };
+  // Looks at what has left until now.
+  void look(Search& search) const;
+  // When to look again for what is over at `at`.
+  TrueTime next_look(SteadyTime deadline, TrueTime at) const;
 
   bool stamps_in_kernel_;
   WaitPoint left_;

@@ -89,6 +89,7 @@ void ClockPort::settle() {
 NicClock::NicClock(SimHost& host)
     : host_(host),
       clock_(host.id(), oscillator_of(host), epoch_of(host)),
+      resolution_(from_ns(nic_of(host).stamp_resolution_ns)),
       read_noise_(host.world().run_seed, host.name("network card's readings")),
       bus_noise_(host.world().run_seed, host.name("network card's bus")),
       label_(host.name("network card's clock")) {}
@@ -151,8 +152,7 @@ double NicClock::max_frequency_ppb() const { return nic_of(host_).max_adjustment
 HardwareTime NicClock::stamp(TrueTime at, RandomStream& draw) const {
   const scenarios::Nic& nic = nic_of(host_);
   const HardwareTime exact(clock_.read(at).time_since_epoch());
-  return round_down(exact + from_ns(draw.normal(nic.stamp_jitter_sigma_ns)),
-                    from_ns(nic.stamp_resolution_ns));
+  return resolution_.round_down(exact + from_ns(draw.normal(nic.stamp_jitter_sigma_ns)));
 }
 
 }  // namespace simbench::sim

@@ -108,11 +108,20 @@ class ClockPort final : public HostClock {
 class SteadyPort final : public SteadyClock {
  public:
   SteadyPort(const Engine& engine, const SystemClock& clock) : engine_(engine), clock_(clock) {}
-  SteadyTime now() const override { return clock_.steady(engine_.now()); }
+  SteadyTime now() const override {
+    if (engine_.now() != read_at_) {
+      read_at_ = engine_.now();
+      reading_ = clock_.steady(read_at_);
+    }
+    return reading_;
+  }
 
  private:
   const Engine& engine_;
   const SystemClock& clock_;
+  // A cache: programs read it several times in one instant.
+  mutable TrueTime read_at_ = TrueTime::min();
+  mutable SteadyTime reading_{};
 };
 
 // The clock has an oscillator of its own, N(skew_sigma_ppm) per host, and reads anything within an
@@ -157,6 +166,7 @@ class NicClock final : public HardwareClock {
 
   SimHost& host_;
   SystemClock clock_;
+  Granularity resolution_;
   RandomStream read_noise_;
   RandomStream bus_noise_;
   std::string label_;

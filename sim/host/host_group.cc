@@ -15,6 +15,7 @@ namespace {
 constexpr double kMsPerHour = 3.6e6;
 constexpr double kMsPerMinute = 6e4;
 constexpr double kSteadyEpochMaxMs = kMsPerHour;
+constexpr std::size_t kSharedBlocks = 256;  // of noise, of 32 KiB each
 
 std::string host_component(std::size_t host, const char* what) {
   return "host" + std::to_string(host) + ": " + what;
@@ -37,9 +38,10 @@ double offset_ms(const scenarios::HostClockModel& clock, std::uint64_t run_seed,
 }  // namespace
 
 OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run_seed,
-                                std::size_t host) {
+                                std::size_t host, std::size_t kept_blocks) {
   if (host == 0 && hosts.master_is_exact) return OscillatorModel(0);
-  OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"));
+  OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"),
+                             TrueTime{}, kept_blocks);
   const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
   if (!skews_ppm.empty()) oscillator.set_skew(skews_ppm[host] * 1e-6);
   const double coefficient_ppb_per_k = hosts.clock.oscillator.temperature_coefficient_ppb_per_k;
@@ -51,9 +53,20 @@ OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run
   return oscillator;
 }
 
+OscillatorModel HostOscillators::of(std::uint64_t run_seed, std::size_t host) {
+  if (of_seed_.empty() || seed_ != run_seed) {
+    seed_ = run_seed;
+    of_seed_.clear();
+    for (std::size_t each = 0; each < static_cast<std::size_t>(hosts_.count); ++each) {
+      of_seed_.push_back(host_oscillator(hosts_, run_seed, each, kSharedBlocks));
+    }
+  }
+  return of_seed_[host];
+}
+
 HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed,
                      std::string_view load_key, InitialClocks initial_clocks,
-                     VirtualContext& context, RecordingSink& sink)
+                     VirtualContext& context, RecordingSink& sink, HostOscillators* oscillators)
     : context_(context),
       engine_(context.engine()),
       parameters_(scenario.hosts),
@@ -84,7 +97,9 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                         .access_point = access_point_ ? &*access_point_ : nullptr};
   const std::vector<std::size_t> cameras = scenario.cameras_by_host();
   for (PeerId id = 0; id < static_cast<PeerId>(scenario.hosts.count); ++id) {
-    make_clock(scenario.hosts, run_seed, initial_clocks);
+    make_clock(oscillators != nullptr ? oscillators->of(run_seed, id)
+                                      : host_oscillator(scenario.hosts, run_seed, id),
+               run_seed, initial_clocks);
     hosts_.emplace_back(world, id, clocks_.back(), cameras[id] > 0);
   }
   if (!scenario.cameras.frame_control) return;
@@ -94,16 +109,15 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
   }
 }
 
-void HostGroup::make_clock(const scenarios::Hosts& parameters, std::uint64_t run_seed,
+void HostGroup::make_clock(OscillatorModel oscillator, std::uint64_t run_seed,
                            InitialClocks initial_clocks) {
   const std::size_t host = clocks_.size();
-  OscillatorModel oscillator = host_oscillator(parameters, run_seed, host);
   RandomStream epoch(run_seed, host_component(host, "steady epoch"));
   const SteadyTime steady_epoch{from_ms(epoch.uniform(0, kSteadyEpochMaxMs))};
   Nanoseconds offset{};
   if (host > 0) {
     const double skew = oscillator.skew() - clocks_[0].oscillator().skew();
-    offset = from_ms(offset_ms(parameters.clock, run_seed, initial_clocks, host, skew));
+    offset = from_ms(offset_ms(parameters_.clock, run_seed, initial_clocks, host, skew));
   }
   clocks_.emplace_back(static_cast<std::uint32_t>(host), std::move(oscillator), offset,
                        steady_epoch);

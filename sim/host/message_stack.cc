@@ -32,11 +32,14 @@ double speed_of(const scenarios::Stack& stack, std::uint64_t run_seed, PeerId ho
 DelayProcess::DelayProcess(const scenarios::DelayLaw& law, std::uint64_t run_seed,
                            ComponentKey name, PeerId host, double factor)
     : law_(&law), draws_(run_seed, name), factor_(factor), table_us_(law.quantiles_us) {
-  if (law.common_share > 0) common_.emplace(run_seed, name, host, from_ms(law.common_time_ms));
+  if (law.common_share <= 0) return;
+  common_.emplace(run_seed, name, host, from_ms(law.common_time_ms));
+  common_weight_ = std::sqrt(law.common_share);
+  own_weight_ = std::sqrt(1 - law.common_share);
 }
 
 Nanoseconds DelayProcess::draw(TrueTime at, const MessageKey& key) {
-  RandomStream draw = draws_.of(key.direction).stream(key.message);
+  RandomStream draw = draws_.of(key);
   const double probability = quantile(at, draw);
   double delay_us = table_us_.empty()
                         ? law_->fixed_us - law_->exponential_us * std::log1p(-probability)
@@ -49,8 +52,7 @@ double DelayProcess::quantile(TrueTime at, RandomStream& draw) {
   if (!common_) return draw.uniform();
   // Below 1, whose exponential is infinite.
   constexpr double kMost = 1 - 0x1p-53;
-  const double share = law_->common_share;
-  const double score = std::sqrt(share) * common_->at(at) + draw.normal(std::sqrt(1 - share));
+  const double score = common_weight_ * common_->at(at) + draw.normal(own_weight_);
   return std::min(normal_probability(score), kMost);
 }
 
@@ -143,7 +145,7 @@ TrueTime MessageStack::interrupt(TrueTime at, const MessageKey& key) {
   const Nanoseconds period = from_us(parts_->stated.interrupt_moderation_us);
   // The interrupt that is already due serves this message too.
   if (parts_->last_interrupt >= at) return parts_->last_interrupt;
-  RandomStream draw = moderation_.of(key.direction).stream(key.message);
+  RandomStream draw = moderation_.of(key);
   const double load = parts_->stated.interrupts_per_s * 1e-9 * static_cast<double>(period.count());
   const bool is_blocked = draw.chance(load / (1 + load));
   const double wait = draw.uniform();

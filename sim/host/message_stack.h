@@ -45,6 +45,7 @@
 //   const TrueTime returns = stamped + stack.wake_up(stamped, {direction, id});
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -64,6 +65,26 @@ struct MessageKey {
   std::uint64_t message = 0;
 };
 
+// The streams of a component's messages, which remember a host's usual directions.
+class MessageStreams {
+ public:
+  MessageStreams(std::uint64_t run_seed, ComponentKey component) : all_(run_seed, component) {}
+
+  RandomStream of(const MessageKey& key) {
+    Known& known = known_[(key.direction ^ (key.direction >> 32)) % known_.size()];
+    if (known.direction != key.direction) known = {key.direction, all_.of(key.direction)};
+    return known.streams.stream(key.message);
+  }
+
+ private:
+  struct Known {
+    std::uint64_t direction = ~std::uint64_t{0};  // nobody's
+    KeyedStreams streams{0, ComponentKey("")};
+  };
+  KeyedStreams all_;
+  std::array<Known, 8> known_;
+};
+
 // One part of the way.
 class DelayProcess {
  public:
@@ -79,10 +100,12 @@ class DelayProcess {
   double quantile(TrueTime at, RandomStream& draw);
 
   const scenarios::DelayLaw* law_;
-  KeyedStreams draws_;
+  MessageStreams draws_;
   double factor_;
   QuantileTable table_us_;
   std::optional<NormalProcess> common_;
+  double common_weight_ = 0;  // in the score of a message, and its own
+  double own_weight_ = 1;
 };
 
 class MessageStack {
@@ -140,7 +163,7 @@ class MessageStack {
   bool sleeps(TrueTime at);
   void stay_awake(TrueTime from);
 
-  KeyedStreams moderation_;
+  MessageStreams moderation_;
   bool is_cold(TrueTime at) const { return at >= load_->warm_until; }
 
   std::optional<Parts> parts_;     // nothing without /hosts/stack

@@ -38,8 +38,10 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
 
 Nanoseconds SimChannel::occupancy(MessageId id) const {
   const HostWorld& world = host_.world();
+  const double mean_ms = world.hosts.send_cost_exponential_ms;
+  if (mean_ms == 0) return from_ms(send_cost_ms_);
   RandomStream draw(world.run_seed, send_cost_key(transport_), direction_of(host_.id(), peer_), id);
-  return from_ms(send_cost_ms_ + draw.exponential(world.hosts.send_cost_exponential_ms));
+  return from_ms(send_cost_ms_ + draw.exponential(mean_ms));
 }
 
 Task<MessageId> SimChannel::send(Bytes message, std::optional<double> bytes_on_wire) {

@@ -72,17 +72,17 @@ PathId SimNetwork::open(PeerId from, PeerId to, Transport transport, Endpoint& e
   const PathId path = found->second;
   if (is_new) {
     ids.emplace(direction_of(to, from), path + 1);
-    paths_.emplace_back(*this, from, to, transport);
-    paths_.emplace_back(*this, to, from, transport);
+    paths_.push_back(std::make_unique<Path>(*this, from, to, transport));
+    paths_.push_back(std::make_unique<Path>(*this, to, from, transport));
   }
-  paths_[path].sender = &endpoint;
-  paths_[path ^ 1].receiver = &endpoint;
+  path_of(path).sender = &endpoint;
+  path_of(path ^ 1).receiver = &endpoint;
   return path;
 }
 
 void SimNetwork::send(PathId path_id, MessageId id, Bytes message,
                       std::optional<double> bytes_on_wire) {
-  Path& path = paths_[path_id];
+  Path& path = path_of(path_id);
   if (path.nagle) {
     std::optional<Segment> segment = path.nagle->add(path_id, id, std::move(message));
     if (segment) send_segment(*std::move(segment));
@@ -96,7 +96,7 @@ void SimNetwork::send(PathId path_id, MessageId id, Bytes message,
 
 void SimNetwork::send_segment(Segment&& segment) {
   const PathId path_id = segment.path;
-  Path& path = paths_[path_id];
+  Path& path = path_of(path_id);
   const MessageId first = segment.first;
   if (catch_up_) catch_up_();
   const bool wireless = is_wireless(path.from, path.to);
@@ -111,7 +111,7 @@ void SimNetwork::send_segment(Segment&& segment) {
   if (path.nagle) {
     path.nagle->on_left();
     // An acknowledgement that the sender owes leaves with its data.
-    if (paths_[path_id ^ 1].nagle->owes_ack()) acknowledge(path_id ^ 1);
+    if (path_of(path_id ^ 1).nagle->owes_ack()) acknowledge(path_id ^ 1);
   }
   if (wireless) {
     engine_.schedule(passed, handler_id_, kAtCell, id);
@@ -137,7 +137,7 @@ HostDeparture SimNetwork::leave_host(PeerId from, bool passes_a_port, Nanosecond
 
 bool SimNetwork::is_dropped(const TrafficPassage& traffic, const Segment& segment) const {
   if (traffic.loss_share <= 0) return false;
-  const Path& path = paths_[segment.path];
+  const Path& path = path_of(segment.path);
   RandomStream draw = KeyedStreams(run_seed_, kBufferDraws)
                           .of(direction_of(path.from, path.to))
                           .of(segment.first)
@@ -182,7 +182,7 @@ void SimNetwork::replicate(const GroupMessage& message, TrueTime at) {
   GroupMessage down{message.segment, {}};
   GroupMessage up{message.segment, {}};
   for (const Recipient& recipient : message.recipients) {
-    const PeerId to = paths_[recipient.path].to;
+    const PeerId to = path_of(recipient.path).to;
     if (!rate_.is_infinite() && switch_of(to) != here) {
       (switch_of(to) > here ? up : down).recipients.push_back(recipient);
       continue;
@@ -224,13 +224,13 @@ void SimNetwork::forward(GroupMessage message, TrueTime at, EventKind where) {
 bool SimNetwork::is_wireless(PeerId from, const std::vector<Recipient>& recipients) const {
   if (cell_ == nullptr) return false;
   return std::ranges::any_of(recipients, [this, from](const Recipient& recipient) {
-    return is_wireless(from, paths_[recipient.path].to);
+    return is_wireless(from, path_of(recipient.path).to);
   });
 }
 
 void SimNetwork::enter_cell(SegmentId id) {
   const Segment& segment = segments_[id];
-  const Path& path = paths_[segment.path];
+  const Path& path = path_of(segment.path);
   const bool is_up = cell_->is_station(path.from) && !segment.is_at_access_point;
   const bool is_stream = path.transport == Transport::kStream;
   cell_->send({.ticket = 2 * id,
@@ -245,7 +245,7 @@ void SimNetwork::enter_cell(SegmentId id) {
 
 void SimNetwork::leave_cell(SegmentId id, bool is_lost) {
   Segment& segment = segments_[id];
-  Path& path = paths_[segment.path];
+  Path& path = path_of(segment.path);
   if (is_lost) {
     path.is_broken = path.transport == Transport::kStream;
     report(segment, std::nullopt);
@@ -270,7 +270,7 @@ Segment SimNetwork::copy_for(const Recipient& recipient, GroupMessage& message) 
 
 void SimNetwork::enter_cell_as_group(std::uint32_t id) {
   GroupMessage& message = group_messages_[id];
-  const PeerId from = paths_[message.recipients.front().path].from;
+  const PeerId from = path_of(message.recipients.front().path).from;
   const bool is_up = cell_->is_station(from) && !message.segment.is_at_access_point;
   WifiHop hop{.ticket = 2 * id + 1,
               .station = from,
@@ -281,7 +281,7 @@ void SimNetwork::enter_cell_as_group(std::uint32_t id) {
     // Those without a radio have it from the access point's switch.
     const TrueTime now = engine_.now();
     std::erase_if(message.recipients, [&](const Recipient& recipient) {
-      const PeerId to = paths_[recipient.path].to;
+      const PeerId to = path_of(recipient.path).to;
       if (cell_->is_station(to)) return false;
       const TrueTime at =
           passes_port(to, true) ? switch_ports_[to].pass(now, on_the_line(message.segment)) : now;
@@ -297,7 +297,7 @@ void SimNetwork::enter_cell_as_group(std::uint32_t id) {
 
 void SimNetwork::leave_cell_as_group(std::uint32_t id, bool is_lost) {
   GroupMessage& message = group_messages_[id];
-  const PeerId from = paths_[message.recipients.front().path].from;
+  const PeerId from = path_of(message.recipients.front().path).from;
   const bool is_up = cell_->is_station(from) && !message.segment.is_at_access_point;
   if (is_up && !is_lost) {
     message.segment.is_at_access_point = true;
@@ -340,10 +340,10 @@ void SimNetwork::handle(Event event) {
       arrive(event.subject);
       break;
     case kAckDue:
-      if (paths_[event.subject].nagle->is_ack_due(event.time)) acknowledge(event.subject);
+      if (path_of(event.subject).nagle->is_ack_due(event.time)) acknowledge(event.subject);
       break;
     case kAckArrival: {
-      std::optional<Segment> segment = paths_[event.subject].nagle->on_ack();
+      std::optional<Segment> segment = path_of(event.subject).nagle->on_ack();
       if (segment) send_segment(*std::move(segment));
       break;
     }
@@ -352,7 +352,7 @@ void SimNetwork::handle(Event event) {
 
 void SimNetwork::pass_switch(SegmentId id, TrueTime at) {
   Segment& segment = segments_[id];
-  const Path& path = paths_[segment.path];
+  const Path& path = path_of(segment.path);
   const Nanoseconds duration = on_the_line(segment);
   const std::int64_t here = segment.switch_number;
   const bool is_last = here == switch_of(path.to);
@@ -374,7 +374,7 @@ void SimNetwork::pass_switch(SegmentId id, TrueTime at) {
 }
 
 void SimNetwork::travel(SegmentId id, TrueTime at) {
-  if (paths_[segments_[id].path].transport != Transport::kStream) {
+  if (path_of(segments_[id].path).transport != Transport::kStream) {
     travel_as_datagram(id, at);
   } else {
     travel_on_stream(id, at);
@@ -383,11 +383,15 @@ void SimNetwork::travel(SegmentId id, TrueTime at) {
 
 void SimNetwork::travel_as_datagram(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
-  Path& path = paths_[segment.path];
+  Path& path = path_of(segment.path);
   RandomStream draw = path.draws.stream(segment.first);
   const TrueTime arrival = at + path.latency.draw(draw, segment.left);
-  const TrueTime copy_arrival = at + path.latency.draw(draw, segment.left);
-  const DatagramFate fate = datagram_law_.draw(draw);
+  TrueTime copy_arrival = arrival;
+  DatagramFate fate;
+  if (!datagram_law_.is_none()) {
+    copy_arrival = at + path.latency.draw(draw, segment.left);
+    fate = datagram_law_.draw(draw);
+  }
   if (fate.is_lost || outages_.unreachable(path.from, segment.left)) {
     report(segment, std::nullopt);
     release(id);
@@ -405,7 +409,7 @@ void SimNetwork::travel_as_datagram(SegmentId id, TrueTime at) {
 // Schedules the arrival of a datagram, corrected for its time in the switch.
 void SimNetwork::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
   Segment& segment = segments_[id];
-  const Path& path = paths_[segment.path];
+  const Path& path = path_of(segment.path);
   Bytes& message = segment.messages.front();
   if (switch_clock_.corrects(message)) {
     const Nanoseconds residence = arrival - segment.at_switch - path.latency.cable();
@@ -418,7 +422,7 @@ void SimNetwork::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
 
 void SimNetwork::travel_on_stream(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
-  Path& path = paths_[segment.path];
+  Path& path = path_of(segment.path);
   RandomStream draw = path.draws.stream(segment.first);
   TrueTime left = segment.left;
   TrueTime arrival = at + path.latency.draw(draw, left) + segment.sent_again_after;
@@ -442,7 +446,7 @@ void SimNetwork::travel_on_stream(SegmentId id, TrueTime at) {
 
 void SimNetwork::arrive(SegmentId id) {
   Segment segment = release(id);
-  Path& path = paths_[segment.path];
+  Path& path = path_of(segment.path);
   if (path.transport != Transport::kStream && outages_.unreachable(path.to, engine_.now())) {
     return;
   }
@@ -462,8 +466,8 @@ void SimNetwork::arrive(SegmentId id) {
 }
 
 void SimNetwork::acknowledge(PathId path_id) {
-  Nagle& nagle = *paths_[path_id].nagle;
-  Path& way_back = paths_[path_id ^ 1];
+  Nagle& nagle = *path_of(path_id).nagle;
+  Path& way_back = path_of(path_id ^ 1);
   RandomStream draw(run_seed_, kAckDraws, direction_of(way_back.from, way_back.to),
                     nagle.acknowledge());
   TrueTime left = engine_.now();
@@ -481,7 +485,7 @@ void SimNetwork::report(const Segment& segment, std::optional<TrueTime> arrival)
   if (segment.is_counted) messages_ += segment.messages.size();
   if (observer_ == nullptr) return;
   if (catch_up_) catch_up_();
-  const Path& path = paths_[segment.path];
+  const Path& path = path_of(segment.path);
   MessageId id = segment.first;
   const bool is_stream = path.transport == Transport::kStream;
   for (const Bytes& message : segment.messages) {

@@ -156,7 +156,7 @@ class SimNetwork : private EventHandler {
   void meet(CrossTraffic& traffic) { traffic_ = &traffic; }
 
   // The messages from the peer that have arrived at the host that opened `path`.
-  Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }
+  Inbox& inbox(PathId path) { return path_of(path ^ 1).inbox; }
 
  private:
   using SegmentId = std::uint32_t;
@@ -192,6 +192,9 @@ class SimNetwork : private EventHandler {
   };
 
   void handle(Event event) override;
+
+  Path& path_of(PathId id) { return *paths_[id]; }
+  const Path& path_of(PathId id) const { return *paths_[id]; }
 
   Nanoseconds on_the_line(const Segment& segment) const {
     return rate_.duration(segment.bytes + parameters_.overhead_bytes);
@@ -281,7 +284,7 @@ class SimNetwork : private EventHandler {
   std::vector<Port> switch_ports_;
   std::unique_ptr<WifiCell> cell_;  // null: all hosts are wired
   std::vector<Port> trunk_ports_;   // of switch s: 2 s towards s - 1, 2 s + 1 towards s + 1
-  std::deque<Path> paths_;
+  std::vector<std::unique_ptr<Path>> paths_;
   std::unordered_map<std::uint64_t, PathId> path_ids_[3];  // by transport, then direction
   Slots<Segment> segments_;
   Slots<GroupMessage> group_messages_;

@@ -247,7 +247,7 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
   if (reference_ && stream.camera == 0) reference_->add(frame.mid_exposure());
   if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
     frame.fate = FrameFate::kLostInCamera;
-    return ended_.push_back(step(now, now, id));
+    return add(ended_, now, now, id);
   }
   const Nanoseconds exposed = frame.readout_start - exposure.start;
   frame.exposure_us = static_cast<std::uint32_t>(exposed.count() / 1000);
@@ -255,8 +255,7 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
   way.kernel_copy_ns = delays.kernel_copy_ns;
   way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
   frame.offered = exposure.end + stream.latency;
-  buses_[stream.controller].offers.push_back(
-      step(frame.offered, {}, id, stream.index_on_controller));
+  add(buses_[stream.controller].offers, frame.offered, {}, id, stream.index_on_controller);
 }
 
 // What is transferred to the host before that, in order of time.
@@ -281,7 +280,7 @@ void CameraWorld::transfer(Bus& bus, TrueTime before) {
       continue;
     }
     while (const auto frame = bus.controller.take_completed(woken.time_since_epoch())) {
-      transferred_.push_back(step(woken, woken, *frame));
+      add(transferred_, woken, woken, *frame);
     }
   }
   bus.offers.erase(bus.offers.begin(), next);
@@ -307,7 +306,7 @@ auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime befo
         at, next->place, alike.transfer_ns,
         std::min(before.time_since_epoch() - Nanoseconds(1), alike.latest(at))));
     if (done == TrueTime::max()) break;
-    transferred_.push_back(step(done, done, next->frame));
+    add(transferred_, done, done, next->frame);
   }
   return next;
 }
@@ -321,7 +320,7 @@ void CameraWorld::offer(Bus& bus, const Step& offer) {
     return;
   }
   frame.fate = FrameFate::kLostOnUsb;
-  ended_.push_back(step(offer.at, offer.at, offer.frame));
+  add(ended_, offer.at, offer.at, offer.frame);
 }
 
 void CameraWorld::deliver(HostSide& host, const Step& transferred) {
@@ -338,7 +337,7 @@ void CameraWorld::deliver(HostSide& host, const Step& transferred) {
       host.load.delay(start_ + arrival.time_since_epoch(), kLateFrame, frame.stream, frame.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
   if (readers_.empty()) {
-    return ended_.push_back(step(stream.last_arrival, now, transferred.frame));
+    return add(ended_, stream.last_arrival, now, transferred.frame);
   }
   readers_[frame.stream].arrive(transferred.frame, stream.last_arrival, read_);
   end_read_frames();
@@ -355,7 +354,7 @@ void CameraWorld::end_read_frames() {
   for (const ReaderQueue::Outcome& outcome : read_) {
     SimFrame& frame = frames_[outcome.frame].frame;
     frame.fate = outcome.fate;
-    ended_.push_back(step(outcome.at, frame.transferred, outcome.frame));
+    add(ended_, outcome.at, frame.transferred, outcome.frame);
   }
   read_.clear();
 }

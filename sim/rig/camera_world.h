@@ -153,6 +153,10 @@ class CameraWorld {
   };
   // A frame at the end of a stage: offered, transferred or delivered.
   struct Step {
+    // To be made in its place: a copy would wait for what was just written.
+    Step(TrueTime ends, TrueTime when_transferred, std::uint64_t number, std::uint32_t id,
+         std::uint32_t on_controller)
+        : at(ends), transferred(when_transferred), order(number), frame(id), place(on_controller) {}
     TrueTime at;
     TrueTime transferred;
     std::uint64_t order = 0;  // among all steps
@@ -176,8 +180,9 @@ class CameraWorld {
   };
 
   static void sort(std::vector<Step>& steps);
-  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame, std::uint32_t place = 0) {
-    return {at, transferred, events_++, frame, place};
+  void add(std::vector<Step>& steps, TrueTime at, TrueTime transferred, std::uint32_t frame,
+           std::uint32_t place = 0) {
+    steps.emplace_back(at, transferred, events_++, frame, place);
   }
   void make_hosts();
   void make_period(CameraPeriod& period);

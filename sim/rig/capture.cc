@@ -238,8 +238,8 @@ void Capture::stamp(const SimFrame& frame, const FrameStamps& stamps) {
                         : stamps.frame,
        .backend =
            backend_stamps_.stamp(clock, steady_starts_[frame.host], date(frame.copied), arrival),
-       .arrival = round_down(arrival.system, arrival_quantum_),
-       .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
+       .arrival = arrival_quantum_.round_down(arrival.system),
+       .arrival_steady = arrival_quantum_.round_down(arrival.steady)});
   truths_.push_back({.pulse = frame.pulse,
                      .exposure_start = date(frame.exposure_start),
                      .exposure_end = date(frame.exposure_end),

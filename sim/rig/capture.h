@@ -110,7 +110,7 @@ class Capture {
   const Outages& outages_;
   CaptureReports reports_;
   EvaluatedSlots slots_;
-  Nanoseconds arrival_quantum_;
+  Granularity arrival_quantum_;
   BackendStamps backend_stamps_;
   std::vector<ClockInterface> interfaces_;
   bool stamps_on_host_;

@@ -94,7 +94,8 @@ std::vector<ClockInterface> interfaces_of(HostGroup& hosts) {
 class WorldRun {
  public:
   WorldRun(const scenarios::Scenario& scenario, const RecordingRequest& request,
-           const EngineLimits& limits, SharedCameras& cameras, RecordingSink& sink)
+           const EngineLimits& limits, SharedCameras& cameras, HostOscillators& oscillators,
+           RecordingSink& sink)
       : scenario_(scenario),
         host_sync_(request.host_sync),
         alignment_(request.capture_alignment),
@@ -112,7 +113,7 @@ class WorldRun {
         context_(std::make_unique<VirtualContext>(engine_)),
         after_capture_(sink),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
-               *context_, after_capture_),
+               *context_, after_capture_, &oscillators),
         synchronisation_(hosts_, *context_),
         sampling_(request.observer == nullptr ? std::nullopt
                                               : std::make_optional<ClockSampling>(
@@ -295,16 +296,20 @@ class WorldRun {
 class Simulation final : public RecordingSource {
  public:
   Simulation(const scenarios::Scenario& scenario, const EngineLimits& limits)
-      : scenario_(scenario), limits_(limits), cameras_(scenario, limits) {}
+      : scenario_(scenario),
+        limits_(limits),
+        cameras_(scenario, limits),
+        oscillators_(scenario.hosts) {}
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
-    return WorldRun(scenario_, request, limits_, cameras_, sink).run(sink);
+    return WorldRun(scenario_, request, limits_, cameras_, oscillators_, sink).run(sink);
   }
 
  private:
   const scenarios::Scenario& scenario_;
   const EngineLimits limits_;
   SharedCameras cameras_;
+  HostOscillators oscillators_;
 };
 
 }  // namespace

@@ -9,11 +9,11 @@ Nanoseconds through_float_ms(Nanoseconds since_boot) {
 }
 
 BackendStamps::BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
-                             Nanoseconds arrival_quantum)
+                             Granularity arrival_quantum)
     : is_converted_(settings.has_value()), resolution_(arrival_quantum) {
   if (!settings) return;
   uptime_ = from_seconds(settings->host_uptime_h * 3600);
-  resolution_ = from_ms(settings->resolution_ms);
+  resolution_ = Granularity(from_ms(settings->resolution_ms));
 }
 
 HostTime BackendStamps::converted(SteadyTime capture_start,
@@ -21,8 +21,8 @@ HostTime BackendStamps::converted(SteadyTime capture_start,
   const SteadyTime monotonic(delivered.steady - (capture_start - uptime_));
   const Nanoseconds since_boot = monotonic.time_since_epoch();
   const Nanoseconds kernel = uptime_.count() > 0 ? through_float_ms(since_boot) : since_boot;
-  const Nanoseconds cut = round_down(monotonic, resolution_).time_since_epoch();
-  return round_down(round_down(delivered.system, resolution_) + (kernel - cut), resolution_);
+  const Nanoseconds cut = resolution_.round_down(monotonic).time_since_epoch();
+  return resolution_.round_down(resolution_.round_down(delivered.system) + (kernel - cut));
 }
 
 }  // namespace simbench::sim

@@ -19,7 +19,7 @@
 // Source: librealsense src/backend.cpp (monotonic_to_realtime), src/mf/mf-uvc.cpp (OnReadSample)
 // until pull request #13997; docs/reference/d455.md section 1.
 //
-//   const BackendStamps stamps(scenario.usb.backend_stamp, arrival_quantum);
+//   const BackendStamps stamps(scenario.usb.backend_stamp, Granularity(from_ms(0.001)));
 //   const SystemClock::Reading reading = system_clock.read_both(now);
 //   const SteadyTime switched_on = system_clock.steady(capture_start);
 //   const HostTime backend = stamps.stamp(system_clock, switched_on, copied, reading);
@@ -39,7 +39,7 @@ class BackendStamps {
  public:
   // Without settings a stamp is the system clock at `copied` in steps of `arrival_quantum`.
   BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
-                Nanoseconds arrival_quantum);
+                Granularity arrival_quantum);
 
   // A stamp of a host with this clock, switched on host_uptime_h before its steady clock read
   // `capture_start`. `copied`: when the transfer has ended and the frame is copied, without delays;
@@ -47,7 +47,7 @@ class BackendStamps {
   HostTime stamp(const SystemClock& clock, SteadyTime capture_start, TrueTime copied,
                  const SystemClock::Reading& delivered) const {
     return is_converted_ ? converted(capture_start, delivered)
-                         : round_down(clock.read(copied), resolution_);
+                         : resolution_.round_down(clock.read(copied));
   }
 
  private:
@@ -55,7 +55,7 @@ class BackendStamps {
 
   bool is_converted_;
   Nanoseconds uptime_{};  // 0: no float
-  Nanoseconds resolution_;
+  Granularity resolution_;
 };
 
 // Milliseconds since the host was switched on, as a 32-bit float has them.

@@ -5,10 +5,14 @@ import {readFileSync} from 'node:fs';
 
 import {bringUp, figure} from './page_parts.mjs';
 
+// Chromium drops the eleventh download within a second.
+const kBetweenDownloadsMs = 120;
+
 export const overview = (page) => page.locator('.archive:not([hidden]) .overview');
 
 async function saved(page, root, ending) {
   const made = root.getByRole('button', {name: new RegExp(`^${ending.toUpperCase()} of `)});
+  await page.waitForTimeout(kBetweenDownloadsMs);
   const [download] = await Promise.all([page.waitForEvent('download'), made.click()]);
   assert.match(download.suggestedFilename(), new RegExp(`^simbench_[\\w.-]+\\.${ending}$`));
   return readFileSync(await download.path());

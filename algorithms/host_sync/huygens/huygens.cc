@@ -72,8 +72,16 @@ class HuygensHost {
       const std::optional<std::int64_t> arrived = raw_.arrival(*received);
       const std::optional<HuygensMessage> message = decode_huygens_message(received->bytes);
       if (!message) continue;
-      HuygensMessage taken = *message;
-      co_await take(peer, std::move(taken), arrived);
+      if (const auto* probe = std::get_if<ProbeMessage>(&*message)) {
+        // Nearly all messages; few of them have an answer.
+        const std::optional<BoundsMessage> bounds = take_probe(peer, *probe, arrived);
+        if (!bounds) continue;
+        Bytes bytes = encode(*bounds);
+        co_await send_to(host_, peer, std::move(bytes));
+      } else {
+        HuygensMessage taken = *message;
+        co_await take(peer, std::move(taken));
+      }
     }
   }
 
@@ -83,15 +91,15 @@ class HuygensHost {
   virtual Task<void> take_other(PeerId peer, HuygensMessage message) = 0;
 
  private:
-  Task<void> take(PeerId peer, HuygensMessage message, std::optional<std::int64_t> arrived) {
+  std::optional<BoundsMessage> take_probe(PeerId peer, const ProbeMessage& probe,
+                                          std::optional<std::int64_t> arrived) {
     const auto link = links_.find(peer);
-    if (const auto* probe = std::get_if<ProbeMessage>(&message)) {
-      if (link == links_.end() || !arrived) co_return;
-      const std::optional<BoundsMessage> bounds = link->second.take(*probe, *arrived);
-      if (!bounds) co_return;
-      Bytes bytes = encode(*bounds);
-      co_await send_to(host_, peer, std::move(bytes));
-    } else if (const auto* bounds = std::get_if<BoundsMessage>(&message)) {
+    if (link == links_.end() || !arrived) return std::nullopt;
+    return link->second.take(probe, *arrived);
+  }
+  Task<void> take(PeerId peer, HuygensMessage message) {
+    if (const auto* bounds = std::get_if<BoundsMessage>(&message)) {
+      const auto link = links_.find(peer);
       if (link == links_.end()) co_return;
       const std::optional<PairLine> line = link->second.take(*bounds);
       if (line) co_await found(peer, *line);

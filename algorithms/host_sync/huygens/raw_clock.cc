@@ -23,8 +23,13 @@ void RawClock::add(std::int64_t raw_ns, SteadyTime at) {
 
 Task<std::optional<std::int64_t>> RawClock::departure(MessageChannel& channel, MessageId id,
                                                       SteadyTime begin) {
+  return is_card() ? stamps_.departure(channel, id) : departure_by_system(channel, id, begin);
+}
+
+Task<std::optional<std::int64_t>> RawClock::departure_by_system(MessageChannel& channel,
+                                                                MessageId id, SteadyTime begin) {
   const std::optional<std::int64_t> stamp = co_await stamps_.departure(channel, id);
-  if (!stamp || is_card()) co_return stamp;
+  if (!stamp) co_return std::nullopt;
   const SteadyTime left = system_.when(HostTime(Nanoseconds(*stamp)));
   const SteadyTime now = host_.steady_clock().now();
   // It left between the two; beyond that is what the system clock's reading is uncertain by, and

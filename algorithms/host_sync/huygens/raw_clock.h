@@ -50,6 +50,8 @@ class RawClock {
   SteeredClock& system() { return system_; }
 
  private:
+  Task<std::optional<std::int64_t>> departure_by_system(MessageChannel& channel, MessageId id,
+                                                        SteadyTime begin);
   bool is_card() const { return stamps_.source() == StampSource::kCard; }
   void add(std::int64_t raw_ns, SteadyTime at);
 

@@ -82,12 +82,17 @@ TEST(FlickerNoise, FloorIsFlatWithinFivePercentInClosedForm) {
   }
 }
 
+FlickerNoise noise_of(double floor_ppb, double step_ms, int host) {
+  return FlickerNoise(floor_ppb, step_ms, kSeed, "host" + std::to_string(host),
+                      GridWalk<double>::kFewestBlocks);
+}
+
 TEST(FlickerNoise, HasTheAllanDeviationOfItsClosedForm) {
   constexpr double kFloorPpb = 0.7;
   expect_allan_deviation(
       [](int i) {
-        return [noise = FlickerNoise(kFloorPpb, 1000, kSeed, "host" + std::to_string(i))](
-                   std::int64_t ns) { return noise.phase_ns(ns); };
+        return
+            [noise = noise_of(kFloorPpb, 1000, i)](std::int64_t ns) { return noise.phase_ns(ns); };
       },
       [](double tau_s) { return kFloorPpb * std::sqrt(flicker_variance(tau_s)); });
 }
@@ -95,9 +100,7 @@ TEST(FlickerNoise, HasTheAllanDeviationOfItsClosedForm) {
 TEST(FlickerNoise, AFinerGridMakesNoDifference) {
   expect_allan_deviation(
       [](int i) {
-        return [noise = FlickerNoise(0.7, 50, kSeed, "host" + std::to_string(i))](std::int64_t ns) {
-          return noise.phase_ns(ns);
-        };
+        return [noise = noise_of(0.7, 50, i)](std::int64_t ns) { return noise.phase_ns(ns); };
       },
       [](double tau_s) { return 0.7 * std::sqrt(flicker_variance(tau_s)); });
 }

@@ -53,6 +53,33 @@ TEST(GridWalkTest, IsTheSameInWhateverOrderItIsAsked) {
   }
 }
 
+TEST(GridWalkTest, CopiesShareWhatWasSampled) {
+  constexpr std::int64_t kFar = 20'000;
+  constexpr int kSteps = kFar - 1;
+  const std::vector<double> expected = phases(kFar);
+  int sampled = 0;
+  const auto counted = [&sampled](double& state, std::int64_t index, double sign) {
+    ++sampled;
+    return walk_step(state, index, sign);
+  };
+  const auto first_point = [&](const GridWalk<double>& walk) {
+    return walk.phase_ns((-kFar + 1) * kStep, counted);
+  };
+  const GridWalk<double> all_kept(kStep, 0.0, 5);
+  EXPECT_EQ(first_point(all_kept), expected[1]);
+  EXPECT_EQ(sampled, kSteps);
+  const GridWalk<double> copy = all_kept;
+  EXPECT_EQ(first_point(copy), expected[1]);
+  EXPECT_EQ(copy.phase_ns(-kStep, counted), expected[kFar - 1]);
+  EXPECT_EQ(sampled, kSteps) << "of five blocks, all of them are kept";
+
+  const GridWalk<double> few_kept(kStep, 0.0);
+  sampled = 0;
+  first_point(few_kept);
+  EXPECT_EQ(few_kept.phase_ns(-kStep, counted), expected[kFar - 1]);
+  EXPECT_GT(sampled, kSteps) << "of two blocks, the first one is sampled anew";
+}
+
 TEST(GridWalkTest, IsLinearBetweenGridPoints) {
   const GridWalk<double> walk(kStep, 0.0);
   for (const std::int64_t point : {-4097, -4096, -1, 0, 1, 4095, 4096, 8192}) {

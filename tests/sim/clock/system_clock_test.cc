@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/clock/clock_interface.h"
+#include "sim/engine/random.h"
 #include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
@@ -96,6 +97,26 @@ TEST(ClockInterfaceTest, ReadingsRoundDownToTheTickThenToTheResolution) {
   EXPECT_EQ(interface.tick_of(host_ms(30)), host_ms(19.625));
   EXPECT_EQ(interface.set_to(host_ms(30.7)), host_ms(30));
   EXPECT_EQ(interface.set_to(host_ms(-30.7)), host_ms(-31));
+}
+
+TEST(GranularityTest, RoundsDownAsADivisionDoes) {
+  RandomStream draw(1, "times");
+  const auto rounded = [](std::int64_t ns, std::int64_t unit) {
+    return Granularity(Nanoseconds(unit)).round_down(HostTime(Nanoseconds(ns)));
+  };
+  for (const std::int64_t unit :
+       {std::int64_t{1}, std::int64_t{2}, std::int64_t{3}, std::int64_t{100},
+        std::int64_t{1'000'000}, std::int64_t{15'625'000}, (std::int64_t{1} << 62) - 1,
+        std::int64_t{1} << 62}) {
+    for (int i = 0; i < 2000; ++i) {
+      const int shift = static_cast<int>(draw.below(64));
+      const auto ns = static_cast<std::int64_t>(draw()) >> shift;
+      if (ns < -(std::int64_t{1} << 62)) continue;
+      ASSERT_EQ(rounded(ns, unit), HostTime(Nanoseconds(floor_div(ns, unit) * unit)))
+          << ns << " in steps of " << unit;
+    }
+  }
+  EXPECT_EQ(rounded(-7, 0), HostTime(Nanoseconds(-7)));
 }
 
 TEST(ClockInterfaceTest, ZeroIsContinuous) {

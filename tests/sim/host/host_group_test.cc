@@ -101,6 +101,25 @@ TEST(HostGroupTest, StatedSkewsLeaveTheNoiseAsDrawn) {
   }
 }
 
+TEST(HostOscillatorsTest, AreThoseOfEachSeedInWhateverOrderTheyAreRead) {
+  scenarios::Scenario scenario = scattered(3);
+  scenario.hosts.clock.oscillator.random_walk_ppb_per_sqrt_s = 3;
+  scenario.hosts.clock.oscillator.flicker_floor_ppb = 3;
+  scenario.hosts.clock.oscillator.wander_step_ms = 100;
+  HostOscillators shared(scenario.hosts);
+  for (const std::uint64_t seed : {5, 5, 6, 5}) {
+    for (std::size_t host = 0; host < 3; ++host) {
+      const OscillatorModel one = shared.of(seed, host);
+      const OscillatorModel other = shared.of(seed, host);
+      const OscillatorModel own = host_oscillator(scenario.hosts, seed, host);
+      for (const double ms : {-5e6, -1.0, 3e3, -4e6}) {
+        EXPECT_EQ(one.deviation_ns(at_ms(ms)), own.deviation_ns(at_ms(ms)));
+        EXPECT_EQ(other.deviation_ns(at_ms(ms - 1)), own.deviation_ns(at_ms(ms - 1)));
+      }
+    }
+  }
+}
+
 TEST(HostGroupTest, AnExactMasterCountsTrueTime) {
   scenarios::Scenario scenario = scattered(3);
   scenario.hosts.clock.oscillator = {.skew_sigma_ppm = 10,

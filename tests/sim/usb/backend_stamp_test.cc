@@ -22,8 +22,9 @@ double stamp_ms(const BackendStamps& stamps, const SystemClock& clock, double co
 
 TEST(BackendStamp, WithoutSettingsIsTheSystemClockInTheArrivalsSteps) {
   const SystemClock clock(0, OscillatorModel(0.0), from_ms(0.25));
-  EXPECT_NEAR(stamp_ms({std::nullopt, from_ms(0.1)}, clock, 2000.17, 2003), 2000.4, 1e-9);
-  EXPECT_NEAR(stamp_ms({std::nullopt, Nanoseconds(0)}, clock, 2000.17, 2003), 2000.42, 1e-9);
+  EXPECT_NEAR(stamp_ms({std::nullopt, Granularity(from_ms(0.1))}, clock, 2000.17, 2003), 2000.4,
+              1e-9);
+  EXPECT_NEAR(stamp_ms({std::nullopt, Granularity()}, clock, 2000.17, 2003), 2000.42, 1e-9);
 }
 
 TEST(BackendStamp, ExactClocksGiveTheExactStamp) {
