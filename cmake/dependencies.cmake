@@ -21,7 +21,8 @@ else()
   find_package(fmt 9 REQUIRED)
 endif()
 
-# Boost 1.81: Asio coroutines, Random (same numbers with every compiler), Math. Headers only.
+# Boost 1.81: Asio coroutines, Beast (HTTP of local pages), Random (same numbers with every compiler),
+# Math. Headers only.
 include(${CMAKE_CURRENT_LIST_DIR}/find_boost_headers.cmake)
 simbench_find_boost_headers(1.81 HINTS ${SIMBENCH_DEPS_DIR}/usr/include)
 if(NOT SIMBENCH_BOOST_INCLUDE_DIR)

@@ -1,10 +1,15 @@
 #include "server/guard.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -81,6 +86,36 @@ std::string new_token() {
   std::string text;
   for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
   return text;
+}
+
+std::string token_in(const std::string& path) {
+  const int made = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (made >= 0) {
+    const std::string token = new_token();
+    const ssize_t written = write(made, token.data(), token.size());
+    close(made);
+    if (written == static_cast<ssize_t>(token.size())) return token;
+    throw std::runtime_error(path + ": the token cannot be written");
+  }
+  struct stat found = {};
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0 || fstat(file, &found) != 0) {
+    if (file >= 0) close(file);
+    throw std::runtime_error(
+        fmt::format("{}: cannot be read: {}", path, std::generic_category().message(errno)));
+  }
+  std::string token(64, '\0');
+  const ssize_t got = read(file, token.data(), token.size());
+  close(file);
+  token.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  while (token.ends_with('\n')) token.pop_back();
+  if ((found.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    throw std::runtime_error(path + ": found a file that others may read, allowed: chmod 600");
+  }
+  if (token.size() != 32 || token.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    throw std::runtime_error(path + ": found no token, allowed: 32 hexadecimal digits, or no file");
+  }
+  return token;
 }
 
 }  // namespace simbench::server

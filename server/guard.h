@@ -54,4 +54,8 @@ class PageGuard {
 // 128 bits of the system's chance as 32 hexadecimal digits. Throws std::system_error.
 std::string new_token();
 
+// The token that a file keeps, for an address that stays the same; without a file one is made,
+// which its owner alone may read. Throws std::runtime_error, "FILE: found ..., allowed ...".
+std::string token_in(const std::string& path);
+
 }  // namespace simbench::server

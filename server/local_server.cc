@@ -202,7 +202,8 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
         handler_(std::move(handler)),
         acceptor_(context_, tcp::endpoint(asio::ip::address_v4::loopback(), options.port)),
         signals_(context_),
-        guard_(acceptor_.local_endpoint().port(), new_token()),
+        guard_(acceptor_.local_endpoint().port(),
+               options.token.empty() ? new_token() : options.token),
         address_(guard_.address()) {}
 
   const std::string& address() const { return address_; }

@@ -46,6 +46,7 @@ namespace simbench::server {
 
 struct ServerOptions {
   std::uint16_t port = 0;  // 0: a free one
+  std::string token{};     // as of token_in() (guard.h); empty: a new one
   std::size_t most_connections = 64;
   std::size_t most_body_bytes = 256 * 1024;
   std::size_t most_waiting_bytes = 16 * 1024 * 1024;  // of one stream

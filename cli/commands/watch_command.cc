@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -15,6 +17,7 @@
 #include "cli/progress.h"
 #include "reports/page/watch_page.h"
 #include "scenarios/loader.h"
+#include "server/guard.h"
 #include "server/local_server.h"
 #include "watch/hook.h"
 #include "watch/monitor.h"
@@ -61,6 +64,7 @@ struct WatchArguments {
   std::string hook;
   bool page = false;
   std::uint64_t port = 0;
+  std::string token_file;
 };
 
 // "hostA=tracking.log" or the path alone; a path may have "=" only behind a "/".
@@ -176,9 +180,19 @@ server::PageResponse answered(const Monitor& monitor, const server::PageRequest&
   return {.status = 404, .body = "there is no such page\n"};
 }
 
-void watch_with_page(Watching& watching, std::uint64_t port) {
+std::string token_of(const std::string& file) {
+  try {
+    return file.empty() ? std::string() : server::token_in(file);
+  } catch (const std::runtime_error& failure) {
+    throw scenarios::InputError(std::string("--token-file ") + failure.what());
+  }
+}
+
+void watch_with_page(Watching& watching, const WatchArguments& arguments) {
   server::LocalServer server(
-      {.port = static_cast<std::uint16_t>(port), .stops_on_signals = true},
+      {.port = static_cast<std::uint16_t>(arguments.port),
+       .token = token_of(arguments.token_file),
+       .stops_on_signals = true},
       [&](const server::PageRequest& request) { return answered(watching.monitor(), request); });
   print_note(fmt::format("open {} in a browser on this machine; {}metrics is for Prometheus",
                          server.address(), server.address()));
@@ -196,7 +210,7 @@ void watch_with_page(Watching& watching, std::uint64_t port) {
 int run_watch(const WatchArguments& arguments) {
   Watching watching(arguments);
   if (arguments.page) {
-    watch_with_page(watching, arguments.port);
+    watch_with_page(watching, arguments);
   } else {
     watch_alone(watching);
   }
@@ -231,6 +245,9 @@ void add_watch_command(CommandLine& line) {
                "Also serve a page of it, and its metrics for Prometheus, on this machine alone");
   command.whole_number("--port", "PORT", options->port, 0, 65535,
                        "With --page: the port. Default: a free one");
+  command.text("--token-file", "FILE", options->token_file,
+               "With --page: keep the secret of the address in this file, so that Prometheus finds "
+               "it\nagain. It is made, for its owner alone, if it is not there");
   command.format(options->format, {"table", "json"});
   command.footer(kWatchExamples);
   command.runs([options] { return run_watch(*options); });

@@ -1,9 +1,13 @@
 #include "server/guard.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <set>
+#include <stdexcept>
 #include <string>
+
+#include "tests/scratch_folder.h"
 
 namespace simbench::server {
 namespace {
@@ -93,6 +97,20 @@ TEST(PageGuardTest, OnlyWhatNoFormSendsIsPosted) {
     head.method = method;
     EXPECT_EQ(status_of(head), 405u) << method;
   }
+}
+
+TEST(PageGuardTest, AFileKeepsAToken) {
+  const ScratchFolder folder;
+  const std::string path = folder / "token";
+  const std::string token = token_in(path);
+  EXPECT_EQ(token.size(), 32u);
+  EXPECT_EQ(token_in(path), token);
+  chmod(path.c_str(), 0644);
+  EXPECT_THROW(token_in(path), std::runtime_error);
+  chmod(path.c_str(), 0600);
+  put(path, "short");
+  EXPECT_THROW(token_in(path), std::runtime_error);
+  EXPECT_THROW(token_in(folder / "none/token"), std::runtime_error);
 }
 
 TEST(PageGuardTest, TokensAreNeverTheSame) {
