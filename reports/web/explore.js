@@ -5,6 +5,7 @@
 
 const kPatienceMs = 15000;  // without an event of a look that goes on, the server is asked again
 const kRetryMs = 2000;
+const kAddressMs = 250;  // without a change, until the address has the state
 
 const $ = (id) => document.getElementById(id);
 const stored = $('stored');
@@ -167,13 +168,15 @@ function watchOverLook() {
   }, 1000);
 }
 
-// Changes within one frame of the screen are one look.
-let scheduled = false;
+// Changes that are made at once are one look.
+let scheduled = false, addressTimer = 0;
 function stateChanged() {
-  history.replaceState(null, '', states.fragment());
+  // Browsers take their time for it, and refuse it when it comes too often.
+  clearTimeout(addressTimer);
+  addressTimer = setTimeout(() => history.replaceState(null, '', states.fragment()), kAddressMs);
   if (scheduled) return;
   scheduled = true;
-  requestAnimationFrame(() => {
+  queueMicrotask(() => {
     scheduled = false;
     showState();
   });

@@ -183,6 +183,7 @@ class ParameterPanel {
   // The parameters of a scenario.
   build(parameters) {
     this.rows.clear();
+    this.shown = [];  // pointers that have other values than the scenario's
     this.groups = [];
     this.root.replaceChildren();
     const often = kOften.map((pointer) => parameters.find((each) => each.pointer === pointer)).filter(Boolean);
@@ -230,9 +231,11 @@ class ParameterPanel {
 
   // The values of a state: those that were changed, else the scenario's own.
   show(sets) {
-    for (const [pointer, row] of this.rows) {
-      row.show(pointer in sets ? sets[pointer] : row.parameter.value);
+    for (const pointer of new Set([...this.shown, ...Object.keys(sets)])) {
+      const row = this.rows.get(pointer);
+      row?.show(pointer in sets ? sets[pointer] : row.parameter.value);
     }
+    this.shown = Object.keys(sets);
   }
 
   // A refusal beside its parameter; without one, none is refused any more. Whether it has a place.

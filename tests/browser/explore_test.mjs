@@ -116,6 +116,7 @@ async function isSteered(server) {
   });
   await check('a link restores what is shown', async () => {
     const shown = await answerOf(page);
+    await page.waitForFunction(() => location.hash.includes('delivery_jitter_transfers'));
     const other = await opened(server, new URL(page.url()).hash);
     assert.equal(await answerOf(other.page), shown);
     await other.context.close();
