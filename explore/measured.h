@@ -1,8 +1,8 @@
 // A rig that was measured, for the page that shows what is simulated beside it: what `diagnose` and
 // `replay` say of the recording, and the stamps' delays, drifts and losses as `fit` reads them.
 //
-//   const Measured rig = measured({"front.bag", "back.bag"}, {}, {});
-//   page.send(beside_json(rig, world).dump());
+//   const Measured rig = measured({"front.bag", "back.bag"}, "rig.json", {}, {});
+//   use(beside_json(rig, world).dump());
 //
 // Errors: evaluation::FitError, and those of app/recorded_streams.h.
 #pragma once

@@ -6,7 +6,7 @@
 // "words": [...], "or_null": true}]. What the page cannot set (pipelines, published values, tables)
 // is left out.
 //
-//   page.send(parameters_json(world).dump());
+//   use(parameters_json(world).dump());
 #pragma once
 
 #include "reports/text/json_node.h"

@@ -1,7 +1,7 @@
 // What the page shows of one state, as JSON with parts of a page in it: the answer, the overview,
 // the tables, the figures. All of it is what reports of the same results show.
 //
-//   stream.send(picture_json(results, world).dump() + "\n");
+//   use(picture_json(results, world, answer).dump());
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // What a page is started with: a scenario by name or file, the archive of a run, or a recording,
 // which is fitted.
 //
-//   const PageSubject subject = subject_of({"my_rig.json"}, {}, {}, {});
+//   const FoundSubject found = subject_of({"my_rig.json"}, {}, {});
 //
 // A file that `simbench fit` wrote names its recording, which is shown beside it where it is still
 // there; else a note says that it is not.

@@ -1,7 +1,7 @@
 // Which requests a local server answers: the rules of local_server.h, on the heads of requests.
 //
 //   const PageGuard guard(8080, "6f1c...");
-//   if (const PageRefusal refusal = guard.judge(head)) return answer(refusal.status, refusal.text);
+//   if (const PageRefusal refusal = guard.judge(head)) print(refusal.status, refusal.text);
 #pragma once
 
 #include <cstdint>

@@ -19,8 +19,9 @@ namespace {
 
 using evaluation::ClockLogPoint;
 
-constexpr std::size_t kNeighbours = 33;  // differences that a step is compared with
-constexpr std::size_t kOutliers = 2;     // of these, one that comes and goes
+constexpr std::size_t kNeighbours = 33;          // differences that a step is compared with
+constexpr std::size_t kLearnedDifferences = 16;  // before any is judged
+constexpr std::size_t kOutliers = 2;             // of these, one that comes and goes
 
 double log_seconds(const ClockLogPoint& point) {
   return std::chrono::duration<double>(point.time).count();
@@ -77,7 +78,7 @@ void ClockWatch::add_point(const ClockLogPoint& point) {
 // Whether the difference before the last one was a step.
 void ClockWatch::look_for_step() {
   const std::size_t differences = std::min(fresh_ - 1, kNeighbours + 2);
-  if (differences < static_cast<std::size_t>(evaluation::kFewestDifferences) + 2) return;
+  if (differences < kLearnedDifferences) return;
   const auto error = [&](std::size_t back) { return kept_[kept_.size() - 1 - back].error_s; };
   std::vector<double> before;
   for (std::size_t back = 2; back < differences; ++back) {

@@ -6,7 +6,7 @@
 // be read is a problem, not an end: it is skipped, and the next one is read.
 //
 //   GrownFrames frames(std::make_unique<Tail>("rig.csv"), {});
-//   for (const RecordedStream& stream : frames.poll().streams) watch.add(stream);
+//   for (const RecordedStream& stream : frames.poll().streams) use(stream);
 #pragma once
 
 #include <cstddef>

@@ -20,7 +20,7 @@
 // Memory: that of the watches; nothing grows with time.
 //
 //   Monitor monitor({.recordings = {"rig.csv"}, .clock_logs = {{"hostA", "tracking.log"}}});
-//   for (const WatchEvent& event : monitor.poll(seconds)) print(event.text);
+//   for (const WatchEvent& event : monitor.poll(now_s)) print(event.text);
 #pragma once
 
 #include <cstddef>

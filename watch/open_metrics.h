@@ -5,7 +5,7 @@
 //
 // Values that do not exist are left out. Source: OpenMetrics 1.0.0 (RFC-style draft of the CNCF).
 //
-//   response.body = open_metrics(monitor.snapshot());
+//   const std::string text = open_metrics(monitor.snapshot());
 #pragma once
 
 #include <string>

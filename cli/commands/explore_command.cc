@@ -37,8 +37,7 @@ Examples:
   simbench explore results/monday                  the world of an archive
   simbench explore front.bag back.bag              a rig that was recorded, fitted to it
   simbench explore --export demo.html              one file to show others, without a server
-  simbench explore 3cam_1host_30fps --export tour.html --sweep /cameras/exposure_ms=2,8,20 \\
-    --sweep /usb/delivery_jitter_transfers=0:1:0.25
+  simbench explore 3cam_1host_30fps --export tour.html --sweep /cameras/exposure_ms=2,8,20
 
 Exit status: 0 ended by Ctrl-C, 1 internal error, 2 bad usage or input.)";
 

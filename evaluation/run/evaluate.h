@@ -107,8 +107,8 @@ Results evaluate_choices(const scenarios::Scenario& scenario, std::vector<Pipeli
 //
 // Throws what evaluate() throws; after that it is of no use.
 //
-//   GrowingEvaluation growing(scenario, make_source, {.share_captures = true});
-//   for (std::uint64_t seeds = 8; reader_stays(); seeds *= 2) show(growing.up_to(seeds));
+//   GrowingEvaluation growing(scenario, [&] { return make_simulation(scenario); }, {});
+//   for (std::uint64_t seeds = 8; seeds < 100; seeds *= 2) use(growing.up_to(seeds));
 class GrowingEvaluation {
  public:
   // `scenario` outlives it. EvaluationOptions::seeds and keep_pulses do not count.

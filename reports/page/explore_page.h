@@ -3,7 +3,7 @@
 // Served, it asks its server for all it shows. Exported, it holds what it shows (`stored`, JSON of
 // explore/demo.h) and needs no server.
 //
-//   response.body = explore_html();
+//   const std::string page = explore_html();
 #pragma once
 
 #include <string>

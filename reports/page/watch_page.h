@@ -1,7 +1,7 @@
 // The page of `simbench watch`, complete in itself; it asks its server for the snapshot of a
 // monitor (watch/monitor.h) once a second.
 //
-//   response.body = watch_html();
+//   const std::string page = watch_html();
 #pragma once
 
 #include <string>

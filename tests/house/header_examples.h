@@ -208,6 +208,31 @@ extern Bytes chunk;
 extern const std::string folder;
 }  // namespace hardware
 
+namespace server {
+extern const RequestHead head;
+PageResponse page(const PageRequest& request);
+}  // namespace server
+
+namespace explore {
+extern const reports::Json json;
+extern const std::string body;
+extern const PageSubject subject;
+extern const LookRequest request;
+extern const std::shared_ptr<server::PageStream> stream;
+extern const scenarios::Scenario world;
+extern const evaluation::Results results;
+extern const reports::ResultsAnswer answer;
+extern const evaluation::Progress progress;
+}  // namespace explore
+
+namespace watch {
+extern const std::vector<evaluation::ClockLogPoint> points;
+extern const std::vector<RecordedStream> streams;
+extern Monitor monitor;
+extern const double phase_ms, common_ms, period_ms;
+extern const WatchEvent event;
+}  // namespace watch
+
 namespace reconstruction {
 extern const Whatever seen, focal_px, options, on_mesh, progress, by_vertex, zbuffer, measured, set,
     make_simulated, errors_of_the_set, frame;
