@@ -111,7 +111,7 @@ bool Look::make_step() {
       make_worlds();
       return stage_ != Stage::kEnd;
     case Stage::kPicture:
-      make_picture(request_.at_once ? request_.seeds : std::min(kFirstSeeds, request_.seeds));
+      make_picture(first_seeds());
       stage_ = request_.levers ? Stage::kLevers : Stage::kRun;
       return true;
     case Stage::kRun:
@@ -147,6 +147,16 @@ bool Look::make_step() {
         {"why",
          is_cut ? "more seeds of so many pipelines would not fit into this page's memory" : ""}});
   return false;
+}
+
+// Those of the first picture: fewer where that would be long in coming, which one seed tells.
+std::uint64_t Look::first_seeds() {
+  if (request_.at_once) return request_.seeds;
+  const std::uint64_t wanted = std::min(kFirstSeeds, request_.seeds);
+  const auto begin = std::chrono::steady_clock::now();
+  for (const std::unique_ptr<View>& view : views_) view->evaluation.up_to(1);
+  const std::chrono::duration<double> one = std::chrono::steady_clock::now() - begin;
+  return one.count() * static_cast<double>(wanted) > request_.patience_s ? 1 : wanted;
 }
 
 void Look::make_worlds() {

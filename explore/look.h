@@ -18,9 +18,10 @@
 // A look with a format has one event in place of these: the text that `simbench run --format`
 // prints of the first state and all its seeds.
 //
-// The first picture is of kFirstSeeds seeds; then come the figures of one run, the budget, and
-// pictures of twice as many seeds each. It ends by itself at the wanted number of seeds, or where
-// more would take more than kMostLookBytes; the last event says so.
+// The first picture is of kFirstSeeds seeds, or of one where these would take long; then come the
+// figures of one run, the budget, and pictures of twice as many seeds each. It ends by itself at
+// the wanted number of seeds, or where more would take more than kMostLookBytes; the last event
+// says so.
 //
 // Contract: the results of n seeds are those of `simbench run` with n seeds. A step that is
 // cancelled (app/interrupt.h) throws and leaves nothing to send.
@@ -49,9 +50,10 @@ struct LookRequest {
   std::string pipeline{};              // shown in detail; "": the best
   std::vector<std::string> figures{};  // of one run, by id
   bool budget = false;
-  bool levers = false;   // what would help; then there are neither figures nor further seeds
-  std::string format{};  // "json", "csv" or "tidy": the results as a text, with or without levers
-  bool at_once = false;  // the first picture is of all seeds, and there are no tables
+  bool levers = false;    // what would help; then there are neither figures nor further seeds
+  std::string format{};   // "json", "csv" or "tidy": the results as a text, with or without levers
+  double patience_s = 2;  // for a first picture of all its seeds; longer: it is of one
+  bool at_once = false;   // the first picture is of all seeds, and there are no tables
 };
 
 // {"states": [...], "seeds", "pipeline", "figures": [ids], "budget", "levers", "format"}; all but
@@ -76,6 +78,7 @@ class Look {
 
   bool make_step();
   void make_worlds();
+  std::uint64_t first_seeds();
   void make_picture(std::uint64_t seeds);
   void make_rest_of_picture();
   void make_figures(const char* of, const std::vector<std::string>& ids, bool budget);

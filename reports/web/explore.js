@@ -55,6 +55,7 @@ const handlers = {
   worlds({worlds, state = 0}) {
     parameters.refuse('', '');
     showRefusal('');
+    say('The first seeds are computed …');
     worlds.forEach((world, i) => views[state + i].showWorld(nameOf(state + i), world));
   },
   refused({pointer, message, state}) {

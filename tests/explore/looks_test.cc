@@ -26,7 +26,12 @@ using testing::SizeIs;
 
 const PageSubject kSubject{.name = "3cam_1host_30fps"};
 
-LookRequest request(const std::string& text) { return request_of(Json::parse(text), kSubject); }
+// The first picture is of all its seeds, however slow the machine is.
+LookRequest request(const std::string& text) {
+  LookRequest request = request_of(Json::parse(text), kSubject);
+  request.patience_s = 1e9;
+  return request;
+}
 
 std::shared_ptr<KeptStream> looked_at(const std::string& text) {
   auto stream = std::make_shared<KeptStream>();
@@ -64,6 +69,19 @@ TEST(LookTest, FirstTheAnswerOfFewSeedsThenTheFiguresThenMoreSeeds) {
               HasSubstr("class=\"overview\""));
   EXPECT_TRUE(events[1]["comparison"].is_null());
   EXPECT_THAT(events[4]["data"]["figures"], SizeIs(2));
+}
+
+TEST(LookTest, AWorldThatTakesLongIsShownFromItsFirstSeedOn) {
+  LookRequest impatient = request(R"({"states": [{"scenario": "3cam_1host_30fps"}], "seeds": 4})");
+  impatient.patience_s = 0;
+  const auto stream = std::make_shared<KeptStream>();
+  Look look(impatient, kSubject, stream);
+  while (look.step()) {
+  }
+  EXPECT_THAT(
+      outline(stream->events()),
+      ElementsAre("worlds", "picture 1", "figures seeds", "tables", "picture 2", "figures seeds",
+                  "tables", "picture 4", "figures seeds", "tables", "end 4"));
 }
 
 TEST(LookTest, TwoStatesAreComparedSeedBySeed) {
