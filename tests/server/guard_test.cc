@@ -33,7 +33,7 @@ TEST(PageGuardTest, TheAddressIsAnsweredAndSplit) {
 }
 
 TEST(PageGuardTest, WhoLacksTheTokenIsRefused) {
-  for (const std::string target :
+  for (const std::string& target :
        {std::string("/"), std::string(""), std::string("*"), "/" + kToken,
         "/" + kToken.substr(1) + "/x", "/" + kToken.substr(0, 31) + "e/",
         std::string("/0123456789ABCDEF0123456789ABCDEF/"), "//" + kToken + "/",
