@@ -40,7 +40,7 @@ bool flag_in(const Json& json, const char* member) {
 
 // A state that is shown, and what is known of it.
 struct Look::View {
-  View(scenarios::Scenario of_world)
+  explicit View(scenarios::Scenario of_world)
       : world(std::move(of_world)),
         evaluation(world, [this] { return app::simulated_world(world); },
                    {.share_captures = true, .cancel = &app::InterruptHandler::flag()}) {}

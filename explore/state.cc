@@ -152,6 +152,14 @@ std::string set_word(const Override& set) {
   return set.pointer + '=' + (value.is_string() ? value.get<std::string>() : set.value);
 }
 
+// Members of lists are no differences that a file could state by themselves.
+bool is_in_list(const Override& set) {
+  for (Json::json_pointer at(set.pointer); !at.empty(); at.pop_back()) {
+    if (at.back().find_first_not_of("0123456789") == std::string::npos) return true;
+  }
+  return false;
+}
+
 // All of a world, with its pipelines alone.
 std::string whole_file(const Scenario& scenario) {
   Json file = Json::parse(scenario.resolved_json());
@@ -250,11 +258,7 @@ std::string python_of(const State& state, const PageSubject& subject, std::uint6
 std::string file_of(const State& state, const PageSubject& subject) {
   const bool is_subject = state.scenario == subject.name;
   const std::vector<Override> sets = all_sets(state, subject);
-  // Members of lists are no differences that a file could state: then it has all of the world.
-  const bool has_lists = std::ranges::any_of(sets, [](const Override& set) {
-    return std::ranges::any_of(std::string_view(set.pointer),
-                               [](char c) { return c >= '0' && c <= '9'; });
-  });
+  const bool has_lists = std::ranges::any_of(sets, is_in_list);
   if (has_lists || !state.pipelines.empty() || (is_subject && subject.text)) {
     return whole_file(world_of(state, subject));
   }

@@ -91,7 +91,7 @@ std::string new_token() {
 std::string token_in(const std::string& path) {
   const int made = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (made >= 0) {
-    const std::string token = new_token();
+    std::string token = new_token();
     const ssize_t written = write(made, token.data(), token.size());
     close(made);
     if (written == static_cast<ssize_t>(token.size())) return token;

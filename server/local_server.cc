@@ -56,9 +56,9 @@ void add_rules(http::fields& head) {
 class ReaderStream final : public PageStream, public std::enable_shared_from_this<ReaderStream> {
  public:
   // `server` is kept, since whoever feeds the stream may do so for longer than the server runs.
-  ReaderStream(std::shared_ptr<void> server, asio::any_io_executor executor,
+  ReaderStream(std::shared_ptr<void> server, const asio::any_io_executor& executor,
                std::size_t most_waiting)
-      : server_(std::move(server)), most_waiting_(most_waiting), wake_(std::move(executor)) {
+      : server_(std::move(server)), most_waiting_(most_waiting), wake_(executor) {
     wake_.expires_at(asio::steady_timer::time_point::max());
   }
 
@@ -184,9 +184,9 @@ PageRefusal refusal_of(const error_code& failed) {
 }
 
 RequestHead head_of(const http::request<http::string_body>& request) {
-  const auto field = [&request](auto name) { return std::string_view(request[name]); };
-  return {.method = std::string_view(request.method_string()),
-          .target = std::string_view(request.target()),
+  const auto field = [&request](auto name) { return static_cast<std::string_view>(request[name]); };
+  return {.method = static_cast<std::string_view>(request.method_string()),
+          .target = static_cast<std::string_view>(request.target()),
           .host = field(http::field::host),
           .origin = field(http::field::origin),
           .fetch_site = field("Sec-Fetch-Site"),
@@ -341,12 +341,13 @@ class LocalServer::Core : public std::enable_shared_from_this<LocalServer::Core>
   }
 
   PageResponse handled(const http::request<http::string_body>& request) {
-    const Target target = guard_.below_token(std::string_view(request.target()));
+    const Target target = guard_.below_token(static_cast<std::string_view>(request.target()));
     try {
-      return handler_({.method = std::string(std::string_view(request.method_string())),
-                       .path = target.path,
-                       .query = target.query,
-                       .body = request.body()});
+      return handler_(
+          {.method = std::string(static_cast<std::string_view>(request.method_string())),
+           .path = target.path,
+           .query = target.query,
+           .body = request.body()});
     } catch (const std::exception& failure) {
       return {.status = 500, .body = std::string(failure.what()) + "\n"};
     }

@@ -37,6 +37,7 @@ double middle_of(std::vector<double> values) {
 // steps, a sawtooth), the median says too little; the mean, without the few largest, does not.
 double scatter_of(const std::vector<double>& differences, double usual) {
   std::vector<double> distances;
+  distances.reserve(differences.size());
   for (const double each : differences) distances.push_back(std::abs(each - usual));
   std::ranges::sort(distances);
   const std::size_t kept = distances.size() - std::min(kOutliers, distances.size() / 4);
