@@ -149,7 +149,7 @@ bool Look::make_step() {
   return false;
 }
 
-// Those of the first picture: fewer where that would be long in coming, which one seed tells.
+// How many seeds the first picture has: one where all would be long in coming, which one tells.
 std::uint64_t Look::first_seeds() {
   if (request_.at_once) return request_.seeds;
   const std::uint64_t wanted = std::min(kFirstSeeds, request_.seeds);

@@ -128,7 +128,8 @@ Scenario loaded(const State& state, const PageSubject& subject) {
   return scenarios::load_scenario(state.scenario, sets);
 }
 
-// Those of the state; without any all but those of real programs, which take minutes.
+// Keeps the pipelines of the state; a state without any has all but those of real programs, which
+// take minutes.
 void keep_pipelines(const State& state, Scenario& scenario) {
   if (state.pipelines.empty()) {
     std::erase_if(scenario.pipelines, [](const auto& each) { return each.programs.has_value(); });

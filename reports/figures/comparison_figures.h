@@ -16,7 +16,7 @@ namespace simbench::reports {
 inline constexpr const char* kComparedDistributions = "compared_distributions";
 inline constexpr const char* kPairedDifferences = "paired_differences";
 
-// Those of one id together, in the order of the comparison.
+// Figures of one id stand together, in the order of the comparison.
 std::vector<Figure> comparison_figures(const Comparison& comparison);
 
 }  // namespace simbench::reports

@@ -37,7 +37,7 @@ std::vector<std::vector<std::size_t>> column_parts(const std::vector<std::size_t
                                                    std::size_t page) {
   const std::size_t keys = std::min(key_columns, widths.size());
   std::vector<ColumnsOfPart> parts = dealt_out(widths, keys, gap, page);
-  // The same number of parts, but of similar widths.
+  // As many parts again, now of similar widths.
   for (std::size_t width = page; width > 0; --width) {
     std::vector<ColumnsOfPart> narrower = dealt_out(widths, keys, gap, width);
     if (narrower.size() > parts.size()) break;
