@@ -8,7 +8,6 @@
 #include <numeric>
 #include <utility>
 
-#include "evaluation/stability/log_stability.h"
 #include "evaluation/stability/time_error.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/text/time_text.h"
@@ -25,12 +24,6 @@ constexpr std::size_t kOutliers = 2;             // of these, one that comes and
 
 double log_seconds(const ClockLogPoint& point) {
   return std::chrono::duration<double>(point.time).count();
-}
-
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 // How far differences lie from the usual one. Where most of them are alike (a clock of coarse
@@ -85,7 +78,7 @@ void ClockWatch::look_for_step() {
   for (std::size_t back = 2; back < differences; ++back) {
     before.push_back(error(back) - error(back + 1));
   }
-  const double usual = middle_of(before);
+  const double usual = evaluation::median(before);
   const double scatter = scatter_of(before, usual);
   const double jump = error(1) - error(2) - usual;
   const double after = error(0) - error(1) - usual;
@@ -120,13 +113,12 @@ void ClockWatch::look_at_limit() {
                                                    reports::time_text(*limit_ms_))});
 }
 
-std::optional<evaluation::Stability> ClockWatch::stability() const {
-  if (kept_.size() <= static_cast<std::size_t>(evaluation::kFewestDifferences)) return std::nullopt;
-  evaluation::LogPoints log{.points = {kept_.begin(), kept_.end()}};
-  for (std::size_t i = 1; i < log.points.size(); ++i) {
-    if (log.points[i].time < log.points[i - 1].time) log.segments.push_back(i);
-  }
-  return evaluation::stability_of(evaluation::evenly_spaced(log, std::nullopt).series);
+std::optional<evaluation::TimeErrorSummary> ClockWatch::time_error() const {
+  if (kept_.empty()) return std::nullopt;
+  evaluation::TimeErrorPiece all;
+  all.x_s.reserve(kept_.size());
+  for (const ClockLogPoint& point : kept_) all.x_s.push_back(point.error_s);
+  return evaluation::time_error_of({.interval_s = 1, .pieces = {std::move(all)}});
 }
 
 }  // namespace simbench::watch

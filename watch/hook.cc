@@ -1,13 +1,12 @@
 #include "watch/hook.h"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
+#include <system_error>
 #include <utility>
-#include <vector>
+
+#include "watch/shell.h"
 
 namespace simbench::watch {
 
@@ -50,28 +49,18 @@ void Hook::finish() {
 }
 
 void Hook::start(const WatchEvent& event) {
-  std::vector<std::string> variables = {
-      "SIMBENCH_EVENT=" +
-          event_json(event).dump(-1, ' ', false, reports::Json::error_handler_t::replace),
-      "SIMBENCH_EVENT_KIND=" + event.kind, "SIMBENCH_EVENT_SUBJECT=" + event.subject,
-      "SIMBENCH_EVENT_TEXT=" + event.text};
-  std::vector<char*> environment;
-  for (char** each = environ; *each != nullptr; ++each) environment.push_back(*each);
-  for (std::string& each : variables) environment.push_back(each.data());
-  environment.push_back(nullptr);
-  std::string shell = "sh";
-  std::string option = "-c";
-  const std::array<char*, 4> words = {shell.data(), option.data(), command_.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  // What it prints must not stand between the lines of events.
-  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-  if (posix_spawn(&running_, "/bin/sh", &actions, nullptr, words.data(), environment.data()) != 0) {
-    running_ = 0;
+  const std::string line =
+      event_json(event).dump(-1, ' ', false, reports::Json::error_handler_t::replace);
+  try {
+    // What it prints must not stand between the lines of events.
+    running_ = start_shell(
+        command_, {.output = STDERR_FILENO,
+                   .variables = {"SIMBENCH_EVENT=" + line, "SIMBENCH_EVENT_KIND=" + event.kind,
+                                 "SIMBENCH_EVENT_SUBJECT=" + event.subject,
+                                 "SIMBENCH_EVENT_TEXT=" + event.text}});
+  } catch (const std::system_error&) {
     ++failed_;
   }
-  posix_spawn_file_actions_destroy(&actions);
 }
 
 }  // namespace simbench::watch

@@ -188,12 +188,12 @@ Json Monitor::snapshot() const {
   for (const WatchedCamera& camera : rig_.cameras()) cameras.push_back(camera_json(camera));
   Json clocks = Json::array();
   for (const auto& clock : clocks_) {
-    const std::optional<evaluation::Stability> stability = clock->watch.stability();
+    const std::optional<evaluation::TimeErrorSummary> error = clock->watch.time_error();
     clocks.push_back({{"subject", clock->watch.subject()},
                       {"file", clock->grown.path()},
                       {"error_ms", clock->watch.error_ms()},
-                      {"max_te_ms", stability ? Json(stability->time_error.max_te_ms) : Json()},
-                      {"rms_te_ms", stability ? Json(stability->time_error.rms_te_ms) : Json()},
+                      {"max_te_ms", error ? Json(error->max_te_ms) : Json()},
+                      {"rms_te_ms", error ? Json(error->rms_te_ms) : Json()},
                       {"steps", clock->watch.steps()},
                       {"samples", clock->watch.samples()}});
   }

@@ -2,23 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace simbench::watch {
-double wrapped_ms(double difference_ms, double period_ms) {
-  return difference_ms - period_ms * std::nearbyint(difference_ms / period_ms);
-}
-
 double PhaseTrack::change_ms(double phase_ms, double period_ms) const {
-  return wrapped_ms(phase_ms - place_ms_, period_ms);
+  return std::remainder(phase_ms - place_ms_, period_ms);
 }
 
 double PhaseTrack::scatter_ms() const {
   if (steps_ms_.size() < 2) return evaluation::kNan;
   std::vector<double> sizes;
   for (const double step : steps_ms_) sizes.push_back(std::abs(step));
-  std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
-  return kSigmaOfMad * sizes[sizes.size() / 2] / std::sqrt(2.0);
+  return kSigmaOfMad * evaluation::median(std::move(sizes)) / std::sqrt(2.0);
 }
 
 double PhaseTrack::limit_ms(double period_ms) const {
@@ -32,8 +28,8 @@ std::optional<PhaseMove> PhaseTrack::add(double phase_ms, double common_ms, doub
     place_ms_ = last_ms_ = phase_ms;
     return std::nullopt;
   }
-  const double step_ms = wrapped_ms(phase_ms - last_ms_, period_ms);
-  const double off_ms = wrapped_ms(change_ms(phase_ms, period_ms) - common_ms, period_ms);
+  const double step_ms = std::remainder(phase_ms - last_ms_, period_ms);
+  const double off_ms = std::remainder(change_ms(phase_ms, period_ms) - common_ms, period_ms);
   const double limit = limit_ms(period_ms);
   last_ms_ = phase_ms;
   if (!is_known()) {  // the place is the mean of the first stretches
@@ -49,12 +45,12 @@ std::optional<PhaseMove> PhaseTrack::add(double phase_ms, double common_ms, doub
     return std::nullopt;
   }
   const bool is_sure =
-      suspected_ms_ && std::abs(wrapped_ms(off_ms - *suspected_ms_, period_ms)) <= limit;
+      suspected_ms_ && std::abs(std::remainder(off_ms - *suspected_ms_, period_ms)) <= limit;
   const double first_ms = suspected_ms_.value_or(off_ms);
   suspected_ms_ = off_ms;
   if (!is_sure) return std::nullopt;
-  const bool is_slip = std::abs(wrapped_ms(first_ms - before_ms_, period_ms)) > limit / 2;
-  place_ms_ = wrapped_ms(place_ms_ + off_ms, period_ms);
+  const bool is_slip = std::abs(std::remainder(first_ms - before_ms_, period_ms)) > limit / 2;
+  place_ms_ = std::remainder(place_ms_ + off_ms, period_ms);
   moved_ms_ += off_ms;
   suspected_ms_.reset();
   before_ms_ = 0;
@@ -62,8 +58,8 @@ std::optional<PhaseMove> PhaseTrack::add(double phase_ms, double common_ms, doub
 }
 
 void PhaseTrack::shift(double reference_ms, double period_ms) {
-  place_ms_ = wrapped_ms(place_ms_ - reference_ms, period_ms);
-  last_ms_ = wrapped_ms(last_ms_ - reference_ms, period_ms);
+  place_ms_ = std::remainder(place_ms_ - reference_ms, period_ms);
+  last_ms_ = std::remainder(last_ms_ - reference_ms, period_ms);
 }
 
 }  // namespace simbench::watch

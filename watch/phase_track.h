@@ -18,9 +18,6 @@ inline constexpr double kMovedSigmas = 6;    // of the phase's own scatter
 // The median absolute distance of normal noise times this is its standard deviation.
 inline constexpr double kSigmaOfMad = 1.4826;
 
-// To the nearest whole period, within half a period either way.
-double wrapped_ms(double difference_ms, double period_ms);
-
 struct PhaseMove {
   double by_ms = 0;
   bool is_slip = false;  // from one stretch to the next; else little by little

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +11,8 @@
 #include <csignal>
 #include <system_error>
 #include <utility>
+
+#include "watch/shell.h"
 
 namespace simbench::watch {
 
@@ -41,27 +42,15 @@ PipeText PipeText::of_command(const std::string& command) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::system_error(errno, std::generic_category(), "pipe2");
   }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  std::string shell = "sh";
-  std::string option = "-c";
-  std::string text = loop;
-  const std::array<char*, 4> words = {shell.data(), option.data(), text.data(), nullptr};
-  pid_t child = 0;
-  const int failed = posix_spawn(&child, "/bin/sh", &actions, &attributes, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  close(ends[1]);
-  if (failed != 0) {
-    close(ends[0]);
-    throw std::system_error(failed, std::generic_category(), command);
+  PipeText text(command, ends[0], 0);
+  try {
+    text.child_ = start_shell(loop, {.output = ends[1]});
+  } catch (const std::system_error&) {
+    close(ends[1]);
+    throw;
   }
-  return {command, ends[0], child};
+  close(ends[1]);
+  return text;
 }
 
 GrownText PipeText::poll() {

@@ -16,28 +16,21 @@ constexpr std::uint64_t kLargestGap = 1000;  // of a counter; more is another co
 constexpr std::size_t kPeriodFrames = 64;
 constexpr std::size_t kFewestFrames = 3;  // of a stretch
 
-double seconds_of(Nanoseconds time) { return std::chrono::duration<double>(time).count(); }
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 // The median interval of the last frames; NaN: too few.
 double period_of(const std::deque<StampedFrame>& frames) {
   std::vector<double> intervals;
   const std::size_t first = frames.size() > kPeriodFrames ? frames.size() - kPeriodFrames : 0;
   for (std::size_t i = first + 1; i < frames.size(); ++i) {
-    intervals.push_back(1000 * seconds_of(frames[i].arrival - frames[i - 1].arrival));
+    intervals.push_back(to_ms(frames[i].arrival - frames[i - 1].arrival));
   }
-  return intervals.size() < kFewestFrames ? evaluation::kNan : median_of(std::move(intervals));
+  return intervals.size() < kFewestFrames ? evaluation::kNan
+                                          : evaluation::median(std::move(intervals));
 }
 
 // The frames of a camera that arrived from then on.
 auto first_from(const std::deque<StampedFrame>& frames, double from_s) {
   return std::ranges::lower_bound(
-      frames, from_s, {}, [](const StampedFrame& frame) { return seconds_of(frame.arrival); });
+      frames, from_s, {}, [](const StampedFrame& frame) { return to_seconds(frame.arrival); });
 }
 
 // Where most of the values are on a circle of a period.
@@ -60,10 +53,8 @@ double phase_in(const std::deque<StampedFrame>& frames, const std::deque<Stamped
   std::vector<double> distances;
   auto near = first_from(reference, from_s - period_ms / 1000);
   for (auto frame = first_from(frames, from_s);
-       frame != frames.end() && seconds_of(frame->arrival) < to_s; ++frame) {
-    const auto distance_ms = [&](const auto& of) {
-      return 1000 * seconds_of(frame->arrival - of->arrival);
-    };
+       frame != frames.end() && to_seconds(frame->arrival) < to_s; ++frame) {
+    const auto distance_ms = [&](const auto& of) { return to_ms(frame->arrival - of->arrival); };
     while (near != reference.end() && std::next(near) != reference.end() &&
            std::abs(distance_ms(std::next(near))) <= std::abs(distance_ms(near))) {
       ++near;
@@ -73,8 +64,8 @@ double phase_in(const std::deque<StampedFrame>& frames, const std::deque<Stamped
   }
   if (distances.size() < kFewestFrames) return evaluation::kNan;
   const double middle = circular_mean(distances, period_ms);
-  for (double& distance : distances) distance = wrapped_ms(distance - middle, period_ms);
-  return wrapped_ms(middle + median_of(std::move(distances)), period_ms);
+  for (double& distance : distances) distance = std::remainder(distance - middle, period_ms);
+  return std::remainder(middle + evaluation::median(std::move(distances)), period_ms);
 }
 
 std::string subject_of(const WatchedCamera& camera) {
@@ -84,7 +75,7 @@ std::string subject_of(const WatchedCamera& camera) {
 }  // namespace
 
 double WatchedCamera::last_s() const {
-  return kept.empty() ? evaluation::kNan : seconds_of(kept.back().arrival);
+  return kept.empty() ? evaluation::kNan : to_seconds(kept.back().arrival);
 }
 
 std::optional<double> RigWatch::now_s() const {
@@ -118,7 +109,7 @@ void RigWatch::add(const std::vector<RecordedStream>& streams) {
 }
 
 void RigWatch::add_frame(const StampedFrame& frame, WatchedCamera& camera) {
-  const double at_s = seconds_of(frame.arrival);
+  const double at_s = to_seconds(frame.arrival);
   if (!camera.kept.empty()) {
     // Its host's clock, or the recorder, began anew: what was before is another time.
     if (frame.arrival < camera.kept.back().arrival) {
@@ -150,7 +141,7 @@ void RigWatch::add_frame(const StampedFrame& frame, WatchedCamera& camera) {
 void RigWatch::forget_old() {
   const double now = now_s().value_or(0);
   for (WatchedCamera& camera : cameras_) {
-    while (camera.kept.size() > 1 && seconds_of(camera.kept.front().arrival) < now - kKeptS) {
+    while (camera.kept.size() > 1 && to_seconds(camera.kept.front().arrival) < now - kKeptS) {
       camera.kept.pop_front();
     }
   }
@@ -234,7 +225,7 @@ bool RigWatch::look_at_stretch(Group& group) {
     if (camera.is_silent || camera.kept.empty() || std::isnan(camera.period_ms)) continue;
     passed_s = std::isnan(passed_s) ? camera.last_s() : std::min(passed_s, camera.last_s());
     longest_ms = std::max(longest_ms, camera.period_ms);
-    if (std::isnan(group.from_s)) group.from_s = seconds_of(camera.kept.front().arrival);
+    if (std::isnan(group.from_s)) group.from_s = to_seconds(camera.kept.front().arrival);
   }
   const double length_s = std::max(kStretchS, kStretchFrames * longest_ms / 1000);
   const double to_s = group.from_s + length_s;
@@ -267,7 +258,7 @@ void RigWatch::judge(Group& group, const std::map<std::size_t, double>& phases, 
     if (track.is_known()) changes.push_back(track.change_ms(phase_ms, period_ms));
   }
   // Two have no majority.
-  const double common_ms = changes.size() > 2 ? median_of(changes) : 0;
+  const double common_ms = changes.size() > 2 ? evaluation::median(changes) : 0;
   for (const auto& [member, phase_ms] : phases) {
     WatchedCamera& camera = cameras_[member];
     const auto move = camera.phase.add(phase_ms, common_ms, period_ms);

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "recording/version.h"
-#include "reports/page/web_files.h"
+#include "reports/page/page_frame.h"
 #include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
@@ -13,16 +12,12 @@ std::string explore_html(const std::string& stored) {
       stored.empty() ? ""
                      : fmt::format("<script type=\"application/json\" id=\"stored\">{}</script>\n",
                                    script_safe(stored));
-  return filled(web::explore_page(),
-                {{"uplot_licence", std::string(web::uplot_licence())},
-                 {"uplot_style", std::string(web::uplot_style())},
-                 {"style", std::string(web::style())},
-                 {"explore_style", std::string(web::explore_style())},
-                 {"version",
-                  fmt::format("simbench {} ({})", html_escaped(version()), html_escaped(commit()))},
-                 {"data", data},
-                 {"uplot_script", std::string(web::uplot_script())},
-                 {"script", std::string(web::explore_script())}});
+  return framed_page({.page = web::explore_page(),
+                      .title = "simbench explore",
+                      .style = web::explore_style(),
+                      .script = web::explore_script(),
+                      .asks_server = stored.empty(),
+                      .more = {{"data", data}}});
 }
 
 }  // namespace simbench::reports

@@ -10,8 +10,7 @@
 #include <optional>
 
 #include "recording/text_fields.h"
-#include "recording/version.h"
-#include "reports/page/web_files.h"
+#include "reports/page/page_frame.h"
 #include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 
@@ -231,17 +230,11 @@ std::string html_page(const HtmlPage& page) {
     data += fmt::format("<script type=\"application/json\" class=\"data\">{}</script>\n",
                         script_safe(json));
   }
-  return filled(web::page(), {{"title", html_escaped(page.title)},
-                              {"subtitle", html_escaped(page.subtitle)},
-                              {"uplot_licence", std::string(web::uplot_licence())},
-                              {"uplot_style", std::string(web::uplot_style())},
-                              {"style", std::string(web::style())},
-                              {"main", page.main},
-                              {"version", fmt::format("simbench {} ({})", html_escaped(version()),
-                                                      html_escaped(commit()))},
-                              {"data", data},
-                              {"uplot_script", std::string(web::uplot_script())},
-                              {"script", std::string(web::script())}});
+  return framed_page(
+      {.page = web::page(),
+       .title = page.title,
+       .script = web::script(),
+       .more = {{"subtitle", html_escaped(page.subtitle)}, {"main", page.main}, {"data", data}}});
 }
 
 std::string html_paragraph(std::string_view style, const std::string& text) {
