@@ -105,7 +105,7 @@ class ReaderStream final : public PageStream, public std::enable_shared_from_thi
 
   // The rest is for the server's thread.
   struct Next {
-    std::string text;  // empty: nothing to send yet
+    std::string text{};  // empty: nothing to send yet
     bool is_over = false;
     bool is_too_slow = false;
   };

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "evaluation/stability/log_stability.h"
 #include "evaluation/stability/time_error.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/text/time_text.h"
@@ -111,6 +112,15 @@ void ClockWatch::look_at_limit() {
                                                    reports::time_text(*limit_ms_))
                                      : fmt::format("{} is within {} again", subject_,
                                                    reports::time_text(*limit_ms_))});
+}
+
+std::optional<evaluation::Stability> ClockWatch::stability() const {
+  if (kept_.size() <= static_cast<std::size_t>(evaluation::kFewestDifferences)) return std::nullopt;
+  evaluation::LogPoints log{.points = {kept_.begin(), kept_.end()}};
+  for (std::size_t i = 1; i < log.points.size(); ++i) {
+    if (log.points[i].time < log.points[i - 1].time) log.segments.push_back(i);
+  }
+  return evaluation::stability_of(evaluation::evenly_spaced(log, std::nullopt).series);
 }
 
 std::optional<evaluation::TimeErrorSummary> ClockWatch::time_error() const {

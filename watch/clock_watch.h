@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "evaluation/stability/clock_log.h"
-#include "evaluation/stability/time_error.h"
+#include "evaluation/stability/stability.h"
 #include "watch/watch_event.h"
 
 namespace simbench::watch {
@@ -44,7 +44,9 @@ class ClockWatch {
   double error_ms() const;
   double last_s() const;
   bool is_off() const { return is_off_; }
-  // The size of what is kept; nothing before the first error.
+  // What `stability` says of what is kept; nothing before there are kFewestDifferences.
+  std::optional<evaluation::Stability> stability() const;
+  // The size of it alone; nothing before the first error.
   std::optional<evaluation::TimeErrorSummary> time_error() const;
 
  private:

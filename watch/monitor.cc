@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "evaluation/diagnosis/diagnose.h"
+#include "evaluation/stability/mask_verdict.h"
 #include "reports/recordings/diagnose_answer.h"
+#include "reports/stability/verdict_text.h"
 #include "reports/text/answer_json.h"
 #include "watch/folder_text.h"
 #include "watch/pipe_text.h"
@@ -20,8 +22,8 @@ namespace {
 using reports::Json;
 
 // Alarms that a later event takes back.
-constexpr std::array kClosing = {"silent",       "losing", "drifts",    "clock_off",
-                                 "stands_still", "gone",   "unreadable"};
+constexpr std::array kClosing = {"silent",       "losing",       "drifts", "clock_off",
+                                 "stands_still", "beyond_limit", "gone",   "unreadable"};
 
 bool closes(const std::string& kind) { return std::ranges::count(kClosing, kind) > 0; }
 
@@ -69,7 +71,7 @@ Json camera_json(const WatchedCamera& camera) {
 
 }  // namespace
 
-Monitor::Monitor(const WatchOptions& options) {
+Monitor::Monitor(const WatchOptions& options) : masks_(options.clock_masks) {
   for (const std::string& path : options.recordings) {
     recordings_.push_back(std::make_unique<Recording>(Recording{
         .grown = frames_of(path, options.columns), .source = {.path = path, .stall_s = kStallS}}));
@@ -157,9 +159,34 @@ void Monitor::diagnose() {
   diagnosis_ = reports::answer_json(reports::diagnose_answer(evaluation::diagnose(kept, {})));
 }
 
+void Monitor::judge(Clock& clock) {
+  const std::optional<evaluation::Stability> stability = clock.watch.stability();
+  if (!stability) return;
+  clock.is_beyond.resize(masks_.size());
+  for (std::size_t i = 0; i < masks_.size(); ++i) {
+    const evaluation::MaskVerdict verdict = evaluation::judge(*stability, masks_[i]);
+    const bool is_beyond = verdict.judgement == evaluation::Judgement::kFails;
+    if (is_beyond == clock.is_beyond[i]) continue;
+    clock.is_beyond[i] = is_beyond;
+    tell({.kind = "beyond_limit",
+          .subject = fmt::format("{} by {}", clock.watch.subject(), verdict.title),
+          .at_s = clock.watch.last_s(),
+          .is_alarm = is_beyond,
+          .text =
+              fmt::format("{}: {}", clock.watch.subject(), reports::mask_verdict_text(verdict))});
+  }
+}
+
+void Monitor::judge_clocks() {
+  if (masks_.empty() || now_s_ - judged_s_ < kJudgeS) return;
+  judged_s_ = now_s_;
+  for (const auto& clock : clocks_) judge(*clock);
+}
+
 std::vector<WatchEvent> Monitor::poll(double now_s) {
   if (std::isnan(begin_s_)) {
     begin_s_ = since_s_ = diagnosed_s_ = now_s;
+    judged_s_ = now_s - kJudgeS;
   }
   now_s_ = now_s;
   ++polls_;
@@ -167,6 +194,7 @@ std::vector<WatchEvent> Monitor::poll(double now_s) {
   for (const auto& recording : recordings_) poll_recording(*recording);
   for (const auto& clock : clocks_) poll_clock(*clock);
   for (const WatchEvent& event : rig_.look()) tell(event);
+  judge_clocks();
   end_old_alarms();
   if (has_alarm() != had) since_s_ = now_s;
   diagnose();

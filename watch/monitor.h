@@ -31,6 +31,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/stability/masks.h"
 #include "recording/recording_columns.h"
 #include "reports/text/json_node.h"
 #include "watch/clock_watch.h"
@@ -43,11 +44,12 @@ namespace simbench::watch {
 inline constexpr double kStallS = 5;
 inline constexpr double kRecentS = 60;
 inline constexpr double kDiagnoseS = 30;
+inline constexpr double kJudgeS = 10;
 inline constexpr std::size_t kKeptEvents = 50;
 
 // "-": standard input.
 struct WatchedLog {
-  std::string host;         // empty: the file's name
+  std::string host{};       // empty: the file's name
   std::string path;         // or the command
   bool is_command = false;  // that prints one (pipe_text.h)
 };
@@ -58,6 +60,8 @@ struct WatchOptions {
   std::vector<WatchedLog> clock_logs{};
   evaluation::ClockLogOptions clock{};
   std::optional<double> clock_limit_ms{};
+  // By which the last kKeptErrors of each clock are judged, kJudgeS apart.
+  std::vector<evaluation::ClockMask> clock_masks{};
   double clock_stall_s = 300;  // logs are written seldom
 };
 
@@ -94,6 +98,7 @@ class Monitor {
     GrownClock grown;
     ClockWatch watch;
     Source source;
+    std::vector<bool> is_beyond{};  // by mask
   };
   struct Recording {
     GrownFrames grown;
@@ -106,6 +111,8 @@ class Monitor {
   void keep(const WatchEvent& event);
   void end_old_alarms();
   void diagnose();
+  void judge(Clock& clock);
+  void judge_clocks();
   void tell(WatchEvent event);
 
   double now_s_ = 0;
@@ -119,6 +126,8 @@ class Monitor {
   bool had_alarm_ = false;
   std::deque<WatchEvent> events_;
   std::vector<WatchEvent> news_;
+  std::vector<evaluation::ClockMask> masks_;
+  double judged_s_ = 0;
   double diagnosed_s_ = 0;
   reports::Json diagnosis_;
 };

@@ -3,7 +3,8 @@
 // JSON, a line each, with the time of the machine beside that of the data:
 //   {"event": "slipped", "subject": "camera front", "at_s": 1234.5, "alarm": true, "text": "..."}
 //
-// Kinds: those of rig_watch.h and clock_watch.h; "stands_still", "gone" and "unreadable" of a file.
+// Kinds: those of rig_watch.h and clock_watch.h; "beyond_limit" of a clock that is judged by
+// masks; "stands_still", "gone" and "unreadable" of a file.
 // An event that is no alarm closes the alarm of the same kind and subject, if one is open.
 #pragma once
 
@@ -14,11 +15,11 @@
 namespace simbench::watch {
 
 struct WatchEvent {
-  std::string kind;
-  std::string subject;   // "camera front", "clock of hostA", "/var/log/rig.csv"
-  double at_s = 0;       // of the data's own time
-  bool is_alarm = true;  // false: it is over
-  std::string text;      // a sentence without its point
+  std::string kind{};
+  std::string subject{};  // "camera front", "clock of hostA", "/var/log/rig.csv"
+  double at_s = 0;        // of the data's own time
+  bool is_alarm = true;   // false: it is over
+  std::string text{};     // a sentence without its point
 };
 
 inline reports::Json event_json(const WatchEvent& event) {

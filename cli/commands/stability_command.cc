@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/figure_file.h"
+#include "cli/mask_options.h"
 #include "evaluation/stability/log_stability.h"
 #include "evaluation/stability/mask_verdict.h"
 #include "recording/date_time.h"
@@ -51,8 +52,7 @@ struct StabilityOptions {
   std::string from;
   std::string until;
   evaluation::ClockLogOptions log;
-  std::string mask;
-  std::vector<std::string> limits;
+  MaskOptions limits;
   std::string figure;
   std::string html;
   std::vector<std::string> command;
@@ -101,13 +101,6 @@ int list_series(const StabilityOptions& options) {
   return kOk;
 }
 
-std::vector<evaluation::ClockMask> masks_of(const StabilityOptions& options) {
-  std::vector<evaluation::ClockMask> masks;
-  if (!options.mask.empty()) masks.push_back(evaluation::mask_named(options.mask));
-  if (!options.limits.empty()) masks.push_back(evaluation::limits_mask(options.limits));
-  return masks;
-}
-
 bool keeps_limits(const reports::StabilityFinding& finding) {
   return std::ranges::none_of(finding.verdicts, [](const evaluation::MaskVerdict& verdict) {
     return verdict.judgement == evaluation::Judgement::kFails;
@@ -118,7 +111,7 @@ int run_stability(const StabilityOptions& options) {
   const FigureFile figure(options.figure);
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
-  const std::vector<evaluation::ClockMask> masks = masks_of(options);
+  const std::vector<evaluation::ClockMask> masks = masks_of(options.limits);
   std::vector<reports::StabilityFinding> found;
   for (const std::string& file : options.files) {
     reports::StabilityFinding finding{
@@ -190,13 +183,7 @@ void add_stability_command(CommandLine& line) {
                "Without the start, of a clock that was not set yet");
   command.flag("--remove-frequency", options->stability.remove_frequency,
                "Remove the frequency offset (a least-squares line) before anything else");
-  std::vector<std::string> masks;
-  for (const evaluation::ClockMask& mask : evaluation::masks()) masks.push_back(mask.id);
-  command.word("--mask", "MASK", options->mask, masks,
-               "Judge by the limits of ITU-T: G.8272 (prtc), G.8273.2 (class), G.813 (sec)");
-  command.list("--limit", "LIMIT,...", options->limits,
-               "Judge by limits of your own: max_te, cte, te_p2p, p50, p95, p99, p99.9, mtie@TAU,\n"
-               "tdev@TAU with a time, adev@TAU, mdev@TAU, hdev@TAU with a number");
+  add_mask_options(command, options->limits);
   command.output("--figure", "FILE", options->figure,
                  "Draw ADEV, TDEV and MTIE with their intervals and limits to this file (.svg or\n"
                  ".pdf, by gnuplot)");

@@ -13,6 +13,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
+#include "cli/mask_options.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "reports/page/watch_page.h"
@@ -46,6 +47,7 @@ Examples:
   simbench watch --clock-command 'chronyc -c -n tracking' --limit-ms 0.5
   simbench watch monday                               what simbench record writes, of a real rig
   simbench watch rig.csv --format json --on-event 'logger "$SIMBENCH_EVENT_TEXT"'
+  simbench watch --clock-log ptp4l.txt --mask class_b  what stability says of the last 4096 errors
   simbench watch rig.csv --page                       the same in a browser, and for Prometheus
   simbench watch rig.csv --for-s 3600 --until-alarm   in a script: how did the hour end?
 
@@ -57,6 +59,7 @@ struct WatchArguments {
   std::vector<std::string> clock_logs;
   std::vector<std::string> clock_commands;
   std::optional<double> limit_ms;
+  MaskOptions limits;
   double interval_s = 0.5;
   std::optional<double> for_s;
   bool until_alarm = false;
@@ -78,7 +81,8 @@ watch::WatchedLog watched_log(const std::string& text, bool is_command) {
 watch::WatchOptions watch_options(const WatchArguments& arguments) {
   watch::WatchOptions options{.recordings = arguments.recordings,
                               .columns = file_options(arguments.reading).columns,
-                              .clock_limit_ms = arguments.limit_ms};
+                              .clock_limit_ms = arguments.limit_ms,
+                              .clock_masks = masks_of(arguments.limits)};
   for (const std::string& log : arguments.clock_logs) {
     options.clock_logs.push_back(watched_log(log, false));
   }
@@ -234,6 +238,7 @@ void add_watch_command(CommandLine& line) {
                 "'chronyc -c -n tracking'");
   command.number("--limit-ms", "MS", options->limit_ms, 0, 1e9,
                  "An error of a clock beyond this is an alarm");
+  add_mask_options(command, options->limits);
   command.number("--interval-s", "S", options->interval_s, 0.05, 60,
                  "How often the files are read. Default: 0.5");
   command.number("--for-s", "S", options->for_s, 0, 1e9, "End after this time");

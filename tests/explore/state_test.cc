@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/program_pipelines.h"
 #include "recording/collected.h"
 
 namespace simbench::explore {
@@ -89,8 +90,9 @@ TEST(StateTest, OnlyWorldsCanBeSet) {
                 HasSubstr("is no parameter of a world"))
         << pointer;
   }
-  EXPECT_THAT(refusal(R"({"scenario": "leaderboard_programs", "pipelines": ["host.chronyd"]})"),
-              testing::Not("none"));
+  app::use_programs();  // as the command does
+  EXPECT_THAT(refusal(R"({"scenario": "leaderboard_programs", "pipelines": ["chronyd"]})"),
+              HasSubstr("chronyd is of real programs, which a page does not start"));
 }
 
 TEST(StateTest, WorldsThatAreTooLargeAreRefused) {

@@ -104,6 +104,26 @@ TEST_F(MonitorTest, AFileThatIsGoneOrNonsenseIsAnAlarmUntilItIsNot) {
   EXPECT_THAT(kinds(monitor.poll(4)), ElementsAre("gone over"));
 }
 
+// The masks are those of `simbench stability`; of the last errors, and again once they are kept.
+TEST_F(MonitorTest, AClockIsJudgedByMasks) {
+  const std::string log = folder_ / "clock.csv";
+  const auto add = [&log](int from, int to, double error_us) {
+    std::ofstream file(log, std::ios::app);
+    for (int i = from; i < to; ++i) file << i << "," << error_us + chance(1, i) << "\n";
+  };
+  std::ofstream(log) << "time_s,offset_us\n";
+  add(0, 100, 0);
+  Monitor monitor({.clock_logs = {{.host = "a", .path = log}},
+                   .clock_masks = {evaluation::limits_mask({"max_te=50us"})}});
+  EXPECT_TRUE(monitor.poll(0).empty());
+  add(100, 103, 80);
+  EXPECT_THAT(kinds(monitor.poll(kJudgeS / 2)), ElementsAre("clock_step"));
+  EXPECT_THAT(kinds(monitor.poll(kJudgeS)), ElementsAre("beyond_limit"));
+  EXPECT_THAT(monitor.snapshot()["text"].get<std::string>(), HasSubstr("clock of a: "));
+  add(103, 103 + static_cast<int>(kKeptErrors) + 10, 0);
+  EXPECT_THAT(kinds(monitor.poll(2 * kJudgeS)), Contains("beyond_limit over"));
+}
+
 // What is shown in three ways is the same.
 TEST_F(MonitorTest, TerminalAndMetricsShowTheSnapshot) {
   Monitor monitor({.recordings = {path_}});

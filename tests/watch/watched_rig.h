@@ -34,7 +34,7 @@ struct WatchedRig {
     std::vector<RecordedStream> streams;
     for (std::size_t camera = 0; camera < cameras; ++camera) {
       RecordedStream stream{
-          .camera = "c" + std::to_string(camera), .host = "pc", .stream = "Depth 0"};
+          .camera = "c" + std::to_string(camera), .host = "pc", .stream = "Depth 0", .frames = {}};
       for (int pulse = from; pulse < to; ++pulse) {
         if (!arrives(camera, pulse)) continue;
         const double noise = jitter_ms * chance(camera, pulse);
