@@ -49,6 +49,8 @@ struct Look::View {
   evaluation::GrowingEvaluation evaluation;
   const Results* results = nullptr;
   std::string pipeline{};  // shown in detail
+  // Of the last picture: what its figures and comparisons are made of.
+  std::optional<reports::Archive> archive{};
 };
 
 LookRequest request_of(const Json& json, const PageSubject& subject) {
@@ -187,7 +189,6 @@ void Look::make_worlds() {
 
 void Look::make_picture(std::uint64_t seeds) {
   Json shown = Json::array();
-  std::vector<reports::Archive> archives;
   for (const std::unique_ptr<View>& view : views_) {
     view->results = &view->evaluation.up_to(seeds);
     const Results& results = *view->results;
@@ -202,13 +203,11 @@ void Look::make_picture(std::uint64_t seeds) {
                        : results.rows.empty() ? ""
                                               : results.rows.front().pipeline;
     }
-    if (views_.size() > 1) {
-      archives.push_back(archive_of(results, view->world, archives.empty() ? "A" : "B"));
-    }
+    view->archive = archive_of(results, view->world, view == views_.front() ? "A" : "B");
   }
   seeds_ = seeds;
   Json comparison;
-  if (archives.size() == 2) comparison = comparison_of(archives[0], archives[1]);
+  if (views_.size() == 2) comparison = comparison_of(*views_[0]->archive, *views_[1]->archive);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - begin_;
   send({{"event", "picture"},
@@ -231,13 +230,12 @@ void Look::make_rest_of_picture() {
 
 void Look::make_figures(const char* of, const std::vector<std::string>& ids, bool budget) {
   for (std::size_t i = 0; i < views_.size(); ++i) {
-    const View& view = *views_[i];
+    View& view = *views_[i];
     if (view.pipeline.empty()) continue;
-    reports::Archive archive = archive_of(*view.results, view.world, "this state");
     app::FigureOptions options{.figures = ids};
     if (ids.front() != kOverSeeds) options.pipelines = {view.pipeline};
     if (budget) options.budget_seeds = 1;
-    const app::ArchiveFigures made = app::archive_figures(archive, options);
+    const app::ArchiveFigures made = app::archive_figures(*view.archive, options);
     Json event = {{"event", "figures"},
                   {"state", i},
                   {"of", of},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "algorithms/registry.h"
+#include "explore/state.h"
 #include "scenarios/changes.h"
 #include "scenarios/loader.h"
 #include "scenarios/schema.h"
@@ -79,11 +80,8 @@ void add_schema(const Json& node, const Json& value, Json& parameter) {
 }
 
 bool is_settable(const std::string& pointer, const Json& value) {
-  for (const char* const fixed : {"/pipelines", "/published", "/name", "/summary",
-                                  "/schema_version", "/$schema", "/base", "/fitted_to"}) {
-    if (pointer.starts_with(fixed)) return false;
-  }
-  return !scenarios::is_table(value) && !(value.is_array() && value.size() > kLongestList);
+  return is_of_a_world(pointer) && !scenarios::is_table(value) &&
+         !(value.is_array() && value.size() > kLongestList);
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ constexpr std::size_t kMostSets = 500;
 constexpr std::size_t kMostPipelines = 64;
 constexpr std::size_t kLongestName = 300;
 
-// What of a state is no value of a world.
-constexpr std::array kFixed = {"/pipelines",      "/name",      "/summary",
-                               "/schema_version", "/published", "/published_figures",
+// What of a scenario is no value of its world.
+constexpr std::array kFixed = {"/pipelines", "/name", "/summary",   "/schema_version",
+                               "/$schema",   "/base", "/published", "/published_figures",
                                "/fitted_to"};
 
 [[noreturn]] void refuse_form(const std::string& what) {
@@ -52,10 +52,8 @@ Override set_in(const Json& json) {
   }
   Override change{.pointer = name_in(json.at("pointer"), "a pointer"),
                   .value = json.at("value").dump()};
-  for (const char* const fixed : kFixed) {
-    if (is_below(change.pointer, fixed)) {
-      throw StateRefused(change.pointer, "is no parameter of a world");
-    }
+  if (!is_of_a_world(change.pointer)) {
+    throw StateRefused(change.pointer, "is no parameter of a world");
   }
   change.label = change.pointer;
   return change;
@@ -175,6 +173,10 @@ std::string whole_file(const Scenario& scenario) {
 }
 
 }  // namespace
+
+bool is_of_a_world(const std::string& pointer) {
+  return std::ranges::none_of(kFixed, [&](const char* fixed) { return is_below(pointer, fixed); });
+}
 
 bool is_builtin_scenario(const std::string& name) {
   const std::vector<scenarios::BuiltinScenario> all = scenarios::builtin_scenarios();

@@ -59,6 +59,10 @@ class StateRefused : public std::runtime_error {
   std::string pointer_;
 };
 
+// Whether a pointer is of a parameter that a page may set: not of pipelines, names and what is
+// published.
+bool is_of_a_world(const std::string& pointer);
+
 // Whether a scenario of the distribution has this name.
 bool is_builtin_scenario(const std::string& name);
 

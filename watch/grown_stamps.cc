@@ -1,6 +1,7 @@
 #include "watch/grown_stamps.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "recording/rs_csv.h"
@@ -25,6 +26,43 @@ void drop_first(std::size_t count, RecordedStream& stream) {
   drop(stream.frames);
   drop(stream.origin.messages);
   stream.columns.for_each(drop);
+}
+
+struct GrownReader {
+  std::function<void()> forget;  // the file begins anew
+  std::function<void()> learn;   // what the first lines hold, which is dropped from then on
+  std::function<void(const std::string& text)> read;
+};
+
+// Reads what has grown behind the first lines. What cannot be read (an Error) is a problem once
+// these are there: a heading without rows is none yet.
+template <class Error>
+void read_grown(GrowingText& tail, FirstLines& first, GrownState& found,
+                const GrownReader& reader) {
+  const GrownText grown = tail.poll();
+  found.is_there = grown.is_there;
+  found.begins_anew = grown.begins_anew;
+  if (grown.begins_anew) {
+    first.forget();
+    reader.forget();
+  }
+  const auto attempt = [&](const auto& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      if (first.are_all()) found.problem = error.what();
+    }
+  };
+  attempt([&] {
+    if (grown.is_cut) {
+      first.take(tail.head(kHeadBytes));
+      reader.learn();
+    }
+    if (!grown.text.empty()) reader.read(first.text() + grown.text);
+  });
+  if (first.are_all() || grown.text.empty()) return;
+  first.take(grown.text);
+  attempt(reader.learn);
 }
 
 }  // namespace
@@ -57,31 +95,17 @@ void GrownFrames::learn() {
 }
 
 GrownFrames::Found GrownFrames::poll() {
-  const GrownText grown = tail_->poll();
-  Found found{{.is_there = grown.is_there, .begins_anew = grown.begins_anew}};
-  if (grown.begins_anew) {
-    first_.forget();
-    known_.clear();
-  }
-  try {
-    if (grown.is_cut) {
-      first_.take(tail_->head(kHeadBytes));
-      learn();
-    }
-    if (grown.text.empty()) return found;
-    found.streams = read(first_.text() + grown.text);
-    for (RecordedStream& stream : found.streams) drop_first(known_[key_of(stream)], stream);
-  } catch (const RecordedFileError& error) {
-    // A heading without rows is no recording yet.
-    if (first_.are_all()) found.problem = error.what();
-  }
-  if (first_.are_all()) return found;
-  first_.take(grown.text);
-  try {
-    learn();
-  } catch (const RecordedFileError& error) {
-    if (first_.are_all()) found.problem = error.what();
-  }
+  Found found;
+  read_grown<RecordedFileError>(*tail_, first_, found,
+                                {.forget = [&] { known_.clear(); },
+                                 .learn = [&] { learn(); },
+                                 .read =
+                                     [&](const std::string& text) {
+                                       found.streams = read(text);
+                                       for (RecordedStream& stream : found.streams) {
+                                         drop_first(known_[key_of(stream)], stream);
+                                       }
+                                     }});
   return found;
 }
 
@@ -97,32 +121,18 @@ std::vector<evaluation::ClockLogPoint> GrownClock::read(const std::string& text)
 void GrownClock::learn() { known_ = read(first_.text()).size(); }
 
 GrownClock::Found GrownClock::poll() {
-  const GrownText grown = tail_->poll();
-  Found found{{.is_there = grown.is_there, .begins_anew = grown.begins_anew}};
-  if (grown.begins_anew) {
-    first_.forget();
-    known_ = 0;
-  }
-  try {
-    if (grown.is_cut) {
-      first_.take(tail_->head(kHeadBytes));
-      learn();
-    }
-    if (grown.text.empty()) return found;
-    found.points = read(first_.text() + grown.text);
-    const auto known = static_cast<std::ptrdiff_t>(std::min(known_, found.points.size()));
-    found.points.erase(found.points.begin(), found.points.begin() + known);
-    found.format = format_;
-  } catch (const scenarios::InputError& error) {
-    if (first_.are_all()) found.problem = error.what();
-  }
-  if (first_.are_all()) return found;
-  first_.take(grown.text);
-  try {
-    learn();
-  } catch (const scenarios::InputError& error) {
-    if (first_.are_all()) found.problem = error.what();
-  }
+  Found found;
+  read_grown<scenarios::InputError>(
+      *tail_, first_, found,
+      {.forget = [&] { known_ = 0; },
+       .learn = [&] { learn(); },
+       .read =
+           [&](const std::string& text) {
+             found.points = read(text);
+             const auto known = static_cast<std::ptrdiff_t>(std::min(known_, found.points.size()));
+             found.points.erase(found.points.begin(), found.points.begin() + known);
+             found.format = format_;
+           }});
   return found;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 #include "tests/reports/sample_clocks.h"
@@ -16,14 +17,13 @@
 namespace simbench::reports {
 namespace {
 
-using ClockJson = nlohmann::ordered_json;
 using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-std::vector<std::string> members_of(const ClockJson& object) {
+std::vector<std::string> members_of(const Json& object) {
   std::vector<std::string> names;
   names.reserve(object.size());
   for (const auto& member : object.items()) names.push_back(member.key());
@@ -31,38 +31,37 @@ std::vector<std::string> members_of(const ClockJson& object) {
 }
 
 TEST(ClockJson, SaysWhatItIs) {
-  const ClockJson root = ClockJson::parse(clock_json(sample_clock_results()));
+  const Json root = Json::parse(clock_json(sample_clock_results()));
   EXPECT_THAT(members_of(root),
               ElementsAre("schema_version", "kind", "version", "commit", "scenario", "seeds",
                           "duration_s", "from_s", "interval_s", "rows", "warnings", "load_reality",
                           "answer", "performance"));
   EXPECT_EQ(root["kind"], "clocks");
   EXPECT_EQ(root["scenario"], "6host_star");
-  EXPECT_EQ(root["seeds"], ClockJson::parse(R"({"first": 4, "count": 3})"));
+  EXPECT_EQ(root["seeds"], Json::parse(R"({"first": 4, "count": 3})"));
   EXPECT_EQ(root["duration_s"], 36'000);
   EXPECT_EQ(root["from_s"], 300);
   EXPECT_EQ(root["interval_s"], 1.0);
-  EXPECT_EQ(root["warnings"], ClockJson::parse(R"(["one was left out"])"));
+  EXPECT_EQ(root["warnings"], Json::parse(R"(["one was left out"])"));
   EXPECT_EQ(root["rows"].size(), 2U);
 }
 
 TEST(ClockJson, UnderLoadTheAnswerSaysHowFarOffTheBenchWas) {
   evaluation::ClockResults loaded = sample_clock_results();
   loaded.results.load_reality = {"within a factor of 2 of real rigs", "no real rig was measured"};
-  const ClockJson root = ClockJson::parse(clock_json(loaded));
-  EXPECT_EQ(root["load_reality"], ClockJson(loaded.results.load_reality));
+  const Json root = Json::parse(clock_json(loaded));
+  EXPECT_EQ(root["load_reality"], Json(loaded.results.load_reality));
   EXPECT_THAT(root["answer"]["lines"],
-              Contains(ClockJson{{"label", "Load"},
-                                 {"text",
-                                  "Within a factor of 2 of real rigs; no real rig was "
-                                  "measured. See `simbench reality`."}}));
+              Contains(Json{{"label", "Load"},
+                            {"text",
+                             "Within a factor of 2 of real rigs; no real rig was "
+                             "measured. See `simbench reality`."}}));
 }
 
 TEST(ClockJson, ARowHasTheMembersThatAreStated) {
-  ClockJson row = ClockJson::parse(clock_json(sample_clock_results()))["rows"][0];
-  EXPECT_EQ(
-      row["metrics"]["clock_spread_ms"],
-      ClockJson::parse(R"({"median": 1.0, "p05": 0.55, "p95": 2.8, "values": [0.5, 1.0, 3.0]})"));
+  Json row = Json::parse(clock_json(sample_clock_results()))["rows"][0];
+  EXPECT_EQ(row["metrics"]["clock_spread_ms"],
+            Json::parse(R"({"median": 1.0, "p05": 0.55, "p95": 2.8, "values": [0.5, 1.0, 3.0]})"));
   EXPECT_EQ(row["metrics"].size(), evaluation::metrics(evaluation::ResultKind::kClockRuns).size());
   for (const char* const curve : {"adev", "mdev", "hdev", "tdev_ms", "mtie_ms"}) {
     ASSERT_EQ(row[curve].size(), 3U) << curve;
@@ -77,7 +76,7 @@ TEST(ClockJson, ARowHasTheMembersThatAreStated) {
        {"metrics", "adev", "mdev", "hdev", "tdev_ms", "mtie_ms", "rms_te_ms"}) {
     EXPECT_EQ(row.erase(seen), 1U) << seen;
   }
-  EXPECT_EQ(row, ClockJson::parse(R"({
+  EXPECT_EQ(row, Json::parse(R"({
     "pipeline": "good", "host_sync": "good", "device_time": "raw_arrival", "gathering": "yoon2021",
     "clock_spread_ms": {"mean": 1.5, "median": 1.5, "p95": 1.5, "max": 3.0, "values": [0.5, 1.0, 3.0]},
     "notes": [], "unsynchronised_hosts": 0, "max_te_ms": 3.0, "constant_te_ms": 3.0, "dynamic_te_ms": 3.0,
@@ -90,8 +89,8 @@ TEST(ClockJson, MediansOfTimesCountTheSeedsThatNeverComeThere) {
   const auto below_of = [](std::vector<double> values) {
     evaluation::ClockResults results = sample_clock_results();
     results.results.rows[0].below_1_ms_s = evaluation::make_series(std::move(values));
-    ClockJson root = ClockJson::parse(clock_json(results));
-    return ClockJson(root["rows"][0]["below_ms"]["1"]);
+    Json root = Json::parse(clock_json(results));
+    return Json(root["rows"][0]["below_ms"]["1"]);
   };
   constexpr double kNever = evaluation::kNan;
   EXPECT_EQ(below_of({1, 3, 2}), 2.0);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/comparison/comparison_scenarios.h"
+#include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 #include "tests/reports/sample_archive.h"
@@ -14,7 +15,6 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Verdict;
-using Json = nlohmann::ordered_json;
 using scenarios::InputError;
 using testing::Contains;
 using testing::ElementsAre;

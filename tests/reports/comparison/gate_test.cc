@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_archive.h"
 #include "tests/reports/sample_results.h"
@@ -11,7 +12,6 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using scenarios::InputError;
 using testing::AllOf;
 using testing::Contains;

@@ -9,12 +9,11 @@
 #include <limits>
 
 #include "reports/page/html_page.h"
+#include "reports/text/json_node.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string from_base64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -12,13 +12,12 @@
 #include "reports/page/html_page.h"
 #include "reports/results/results_document.h"
 #include "reports/text/escaped_text.h"
+#include "reports/text/json_node.h"
 #include "tests/reports/sample_figures.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 ReportedArchive monday_archive() {
   Archive archive;

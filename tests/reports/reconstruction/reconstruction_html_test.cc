@@ -5,12 +5,11 @@
 #include <string>
 
 #include "reports/reconstruction/reconstruction_folder.h"
+#include "reports/text/json_node.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<ReconstructionPicture> pictures() {
   return {{.pipeline = "yoon2021_both",

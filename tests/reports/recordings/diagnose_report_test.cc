@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "reports/text/json_node.h"
+
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 

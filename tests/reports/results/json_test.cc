@@ -5,12 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "recording/version.h"
+#include "reports/text/json_node.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 TEST(ResultsJson, SaysWhatItIs) {
   const Json root = Json::parse(json(sample_results()));

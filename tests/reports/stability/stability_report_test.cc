@@ -7,11 +7,11 @@
 #include <string>
 
 #include "reports/stability/verdict_text.h"
+#include "reports/text/json_node.h"
 
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;

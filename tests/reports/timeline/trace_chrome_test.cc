@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/text/json_node.h"
 #include "reports/timeline/trace.h"
 #include "reports/timeline/trace_events.h"
 #include "tests/reports/timeline/trace_format.h"
@@ -15,7 +16,6 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
