@@ -49,7 +49,7 @@ struct Look::View {
   evaluation::GrowingEvaluation evaluation;
   const Results* results = nullptr;
   std::string pipeline{};  // shown in detail
-  // Of the last picture: what its figures and comparisons are made of.
+  // The last picture; its figures and comparisons are made of it.
   std::optional<reports::Archive> archive{};
 };
 
