@@ -52,6 +52,8 @@ void add_replay_command(CommandLine& line);
 void add_diagnose_command(CommandLine& line);
 // Cameras and clocks while their files grow.
 void add_watch_command(CommandLine& line);
+// How far the frames of each set can be apart, for sure.
+void add_certify_command(CommandLine& line);
 // How stable a measured clock is, from the logs of other programs.
 void add_stability_command(CommandLine& line);
 // A scenario made of a recording.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "recording/duration_in.h"
 #include "recording/number_in.h"
 #include "recording/text_fields.h"
 #include "scenarios/loader.h"
@@ -127,20 +128,6 @@ std::string option_names() {
   return names;
 }
 
-// A number above 0 with a unit of time; nothing for another text.
-std::optional<double> seconds_in(std::string_view text) {
-  constexpr std::pair<std::string_view, double> kTimeUnits[] = {
-      {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"s", 1}};
-  for (const auto& [unit, seconds] : kTimeUnits) {
-    if (!text.ends_with(unit)) continue;
-    const auto value = number_in<double>(text.substr(0, text.size() - unit.size()));
-    return value && *value > 0 && *value * seconds <= kLargestSeconds
-               ? std::optional(*value * seconds)
-               : std::nullopt;
-  }
-  return std::nullopt;
-}
-
 // One of the limits that --limit states.
 struct LimitText {
   std::string_view text;
@@ -153,9 +140,8 @@ struct LimitText {
   }
   double seconds(std::string_view what, std::string_view found, const char* example) const {
     const std::optional<double> value = seconds_in(found);
-    if (value) return *value;
-    refuse(what, found,
-           fmt::format("a time above 0 with its unit (s, ms, us, ns), as in {}", example));
+    if (value && *value <= kLargestSeconds) return *value;
+    refuse(what, found, fmt::format("{}, as in {}", kDurationAllowed, example));
   }
   double number(std::string_view found) const {
     const auto value = number_in<double>(found);

@@ -27,6 +27,7 @@ from .algorithms import (
     Frame, Parameter, Sample, capture_alignment, device_time, gathering, host_sync, pipeline,
 )  # fmt: skip
 from .budgets import Budget, budget
+from .certificates import Certificates, certify
 from .clock_logs import Stability, clock_series, stability
 from .clock_runs import Clocks, clocks
 from .errors import Error, InputError, MissingPackage, OutputError
@@ -47,11 +48,12 @@ _simbench.use_programs(sys.executable or "python3", ["-c", _command], _folder)
 __version__: str = _simbench.version
 
 __all__ = [
-    "Advice", "Budget", "Clocks", "Comparison", "Diagnosis", "Error", "Fit", "Frame", "Gate",
-    "InputError", "Inspection", "MissingPackage", "OutputError", "Paper", "Parameter", "Reality",
-    "Result", "Sample", "Stability", "Sweep", "Trace", "advise", "budget", "capture_alignment",
-    "clock_series", "clocks", "compare", "convert_ibl", "describe", "device_time", "diagnose",
-    "export", "figure", "fit", "gate", "gathering", "host_sync", "inspect", "list_scenarios",
-    "listing", "load", "paper", "pipeline", "reality", "record", "replay", "report", "run",
-    "save_baseline", "stability", "sweep", "trace", "validate", "write_recording",
+    "Advice", "Budget", "Certificates", "Clocks", "Comparison", "Diagnosis", "Error", "Fit",
+    "Frame", "Gate", "InputError", "Inspection", "MissingPackage", "OutputError", "Paper",
+    "Parameter", "Reality", "Result", "Sample", "Stability", "Sweep", "Trace", "advise", "budget",
+    "capture_alignment", "certify", "clock_series", "clocks", "compare", "convert_ibl", "describe",
+    "device_time", "diagnose", "export", "figure", "fit", "gate", "gathering", "host_sync",
+    "inspect", "list_scenarios", "listing", "load", "paper", "pipeline", "reality", "record",
+    "replay", "report", "run", "save_baseline", "stability", "sweep", "trace", "validate",
+    "write_recording",
 ]  # fmt: skip

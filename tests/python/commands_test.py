@@ -232,6 +232,43 @@ class StabilityTest(CommandsTest):
         self.assertEqual(list(series["name"]), ["time_s", "error_ns"])
 
 
+class CertifyTest(CommandsTest):
+    WORLD = {"/cameras/count": 6, "/hosts/count": 2, "/timeline/frames": 20,
+             "/timeline/warm_up_ms": 200}
+    ARGUMENTS = ["certify", "18cam_6host_45fps_lan", "--pipelines", "two_way_hull", *(
+        f"--set={name}={value}" for name, value in WORLD.items())]
+
+    def certify(self, **options):
+        return quietly(simbench.certify, "18cam_6host_45fps_lan", pipelines=["two_way_hull"],
+                       set=self.WORLD, **options)
+
+    def test_all_numbers_are_the_commands(self):
+        found = self.certify(within="5ms", host_rate_ppm=20)
+        arguments = [*self.ARGUMENTS, "--within", "5ms", "--host-rate-ppm", "20"]
+        self.assertEqual(found.data, json.loads(command.simbench(*arguments, "--json")))
+        for format in ("table", "markdown", "latex"):
+            self.assertEqual(found.text(format), command.simbench(*arguments, "--format", format))
+        self.assertEqual(found.assumptions["host_rate_ppm"], 20)
+        self.assertEqual(found.table["truth_outside"][0], 0)
+        self.assertEqual(found.table["certified_p95_ms"][0],
+                         found.data["rows"][0]["certified_ms"]["p95"])
+        self.assertGreater(found.weakest["width_ms"][0], 0)
+        self.assertEqual(len(found.contradictions), 0)
+        self.assertIn("<table>", found._repr_html_())
+
+    def test_what_is_not_met_is_no_exception(self):
+        self.assertIs(self.certify(within="1us", require=1).passed, False)
+        self.assertIs(self.certify(within="5ms", require=100).passed, True)
+
+    def test_a_wrong_assumption_is_a_row(self):
+        found = self.certify(host_rate_ppm=0, camera_rate_ppm=0)
+        self.assertEqual(found.table["contradicted"][0], 1)
+        self.assertGreater(len(found.contradictions["chain"][0]), 1)
+
+    def test_refuses_what_the_command_refuses(self):
+        self.check_refused(lambda: self.certify(within="1"), "within: found '1'")
+
+
 class FitTest(CommandsTest):
     def test_fit_and_ranking_are_the_commands(self):
         ours, theirs = self.path("ours/model.json"), self.path("theirs/model.json")

@@ -1,0 +1,326 @@
+#include "evaluation/certificates/certificate_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "evaluation/certificates/contradiction.h"
+#include "evaluation/run/jobs.h"
+#include "evaluation/scoring/score_observer.h"
+#include "evaluation/statistics/statistics.h"
+#include "recording/forked_sink.h"
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+double bound_ms(Picoseconds apart) {
+  return apart >= Picoseconds(ClockGraph::kUnbounded) / 2 ? kUnknown : to_ms(apart);
+}
+
+// The sets of a scorer, by their cameras and sensor stamps.
+class SetCollector final : public ScoreObserver {
+ public:
+  using Member = std::pair<std::uint32_t, DeviceTime>;
+
+  void on_stamp(const GatherFrame& /*frame*/) override {}
+  void on_set(std::span<const GatherFrame> set, bool /*complete*/, GlobalTime /*now*/) override {
+    std::vector<Member>& members = sets_.emplace_back();
+    for (const GatherFrame& frame : set) members.emplace_back(frame.source, frame.sensor);
+  }
+  void on_shift(Nanoseconds /*shift*/) override {}
+
+  const std::vector<std::vector<Member>>& sets() const { return sets_; }
+
+ private:
+  std::vector<std::vector<Member>> sets_;
+};
+
+// The sets' frames in the evidence. A frame belongs to one set; of frames of one camera with one
+// stamp, as after a reset of its clock, the first that belongs to none is meant.
+std::vector<EvidenceSet> frames_of(const SetCollector& collected, const Evidence& evidence) {
+  std::multimap<SetCollector::Member, std::size_t> free;
+  for (std::size_t i = 0; i < evidence.frames().size(); ++i) {
+    const FrameEvidence& frame = evidence.frames()[i];
+    free.emplace_hint(free.end(), SetCollector::Member(frame.camera, frame.sensor), i);
+  }
+  std::vector<EvidenceSet> sets;
+  for (const auto& members : collected.sets()) {
+    EvidenceSet& set = sets.emplace_back();
+    for (const SetCollector::Member& member : members) {
+      const auto found = free.find(member);
+      if (found == free.end()) continue;
+      set.push_back(found->second);
+      free.erase(found);
+    }
+  }
+  return sets;
+}
+
+// When the clocks were read: of each camera by polls, of each host by messages.
+class Readings {
+ public:
+  explicit Readings(const Evidence& evidence)
+      : layout_(evidence.layout()), of_camera_(layout_.cameras.size()), of_host_(layout_.hosts) {
+    for (const ClockPollEvidence& poll : evidence.polls()) {
+      of_camera_[poll.camera].push_back(nanoseconds_of(poll.device));
+    }
+    for (const HostMessage& message : evidence.messages()) {
+      of_host_[message.from].push_back(nanoseconds_of(message.sent));
+      of_host_[message.to].push_back(nanoseconds_of(message.received));
+    }
+    for (auto* const all : {&of_camera_, &of_host_}) {
+      for (std::vector<std::int64_t>& times : *all) std::ranges::sort(times);
+    }
+  }
+
+  // From a frame to the nearest reading of the tie.
+  double age_s(const WeakLink& tie, const FrameEvidence& frame) const {
+    if (tie.kind == LinkKind::kCamera) {
+      return nearest_s(of_camera_[tie.first], nanoseconds_of(frame.sensor));
+    }
+    const std::int64_t arrival = nanoseconds_of(frame.arrival);
+    return nearest_s(of_host_[frame_host_is_first(tie, frame) ? tie.first : tie.second], arrival);
+  }
+
+ private:
+  bool frame_host_is_first(const WeakLink& tie, const FrameEvidence& frame) const {
+    return layout_.cameras[frame.camera].host == tie.first;
+  }
+
+  static double nearest_s(const std::vector<std::int64_t>& times, std::int64_t at) {
+    const auto after = std::ranges::lower_bound(times, at);
+    double nearest = kUnknown;
+    if (after != times.end()) nearest = static_cast<double>(*after - at) * 1e-9;
+    if (after != times.begin()) {
+      nearest = std::min(nearest, static_cast<double>(at - *(after - 1)) * 1e-9);
+    }
+    return nearest;
+  }
+
+  const RigLayout& layout_;
+  std::vector<std::vector<std::int64_t>> of_camera_;
+  std::vector<std::vector<std::int64_t>> of_host_;
+};
+
+std::string clock_name(const FactOrder& order, std::uint32_t clock) {
+  return clock < order.hosts() ? fmt::format("host {}", clock)
+                               : fmt::format("camera {}", clock - order.hosts());
+}
+
+std::string instant_text(const FactOrder& order, std::uint32_t place) {
+  const ClockPoint& point = order.points()[place];
+  return fmt::format("{} at {:.6f} s", clock_name(order, point.clock), to_seconds(point.local));
+}
+
+// "message: sent by host 2 at 12.345678 s, received by host 0 at 45.678901 s".
+std::string fact_text(const FactOrder& order, const ClockFact& fact) {
+  const std::string before = instant_text(order, fact.to);
+  const std::string after = instant_text(order, fact.from);
+  switch (fact.kind) {
+    case FactKind::kMessage:
+      return fmt::format("a message sent by {} was received by {}", before, after);
+    case FactKind::kPollRequest:
+      return fmt::format("{} asked for the clock, which read no more than {}", before, after);
+    case FactKind::kPollReply:
+      return fmt::format("a clock that read {} had been read by {}", before, after);
+    case FactKind::kArrival:
+      return fmt::format("a frame exposed by {} had arrived at {}", before, after);
+  }
+  return {};
+}
+
+ContradictedCapture contradicted(std::uint64_t seed, const Evidence& evidence,
+                                 const FactOrder& order, std::uint32_t closing) {
+  const Contradiction proof = contradiction_of(order, closing);
+  ContradictedCapture found{.seed = seed, .before_ms = to_ms(proof.before)};
+  for (const std::uint32_t fact : proof.facts) {
+    found.chain.push_back(fact_text(order, order.facts()[fact]));
+  }
+  found.possible_ppm = possible_rate_ppm(evidence).value_or(0);
+  return found;
+}
+
+using TieKey = std::tuple<LinkKind, std::uint32_t, std::uint32_t>;
+struct TieSums {
+  std::size_t sets = 0;
+  double width_ms = 0;
+  double age_s = 0;
+};
+
+// What a capture adds to its row.
+struct CapturePart {
+  std::string problem{};
+  std::vector<ContradictedCapture> contradicted{};
+  std::vector<double> apart_ms{};
+  std::size_t impossible_sets = 0;
+  std::size_t frames = 0, frames_outside = 0;
+  std::size_t messages = 0, unusable_messages = 0, polls = 0;
+  std::map<TieKey, TieSums> ties{};
+};
+
+void add_sets(const CertifiedCapture& found, const std::vector<EvidenceSet>& sets,
+              const Evidence& evidence, CapturePart& part) {
+  const Readings readings(evidence);
+  part.impossible_sets = found.impossible_sets;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const SetCertificate& set = found.sets[i];
+    part.apart_ms.push_back(bound_ms(set.apart));
+    part.frames_outside += set.frames_outside;
+    part.frames += static_cast<std::size_t>(std::ranges::count_if(
+        sets[i], [&](std::size_t frame) { return evidence.frames()[frame].truth.has_value(); }));
+    if (sets[i].size() < 2) continue;
+    const WeakLink& tie = set.weakest;
+    TieSums& sums = part.ties[{tie.kind, tie.first, tie.second}];
+    const auto age_of = [&](std::size_t member) {
+      return readings.age_s(tie, evidence.frames()[sets[i][member]]);
+    };
+    ++sums.sets;
+    sums.width_ms += bound_ms(tie.width);
+    sums.age_s += tie.kind == LinkKind::kCamera
+                      ? age_of(evidence.frames()[sets[i][set.widest.first]].camera == tie.first
+                                   ? set.widest.first
+                                   : set.widest.second)
+                      : std::max(age_of(set.widest.first), age_of(set.widest.second));
+  }
+}
+
+CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineChoice& choice,
+                            std::uint64_t seed, RecordingSource& source,
+                            const CertificateOptions& options) {
+  CapturePart part;
+  const ScorerSetup setup = scorer_setup(scenario, choice);
+  PipelineScorer scorer(setup);
+  SetCollector collected;
+  scorer.watch(collected);
+  Evidence evidence(options.assumptions, setup.stream);
+  ForkedSink both({&scorer, &evidence});
+  try {
+    const SeedScore score = score_run(source, choice, seed, scorer, both);
+    if (!score.program_failures.empty()) part.problem = score.program_failures.front().how;
+  } catch (const RecordingFailed& failure) {
+    part.problem = failure.what();
+    return part;
+  }
+  part.messages = evidence.messages().size();
+  part.unusable_messages = evidence.unusable_messages();
+  part.polls = evidence.polls().size();
+  const std::vector<EvidenceSet> sets = frames_of(collected, evidence);
+  const FactOrder order(evidence);
+  const CertifiedCapture found = certify(evidence, order, sets, options.horizon);
+  if (found.contradiction) {
+    part.contradicted = {contradicted(seed, evidence, order, *found.contradiction)};
+  } else {
+    add_sets(found, sets, evidence, part);
+  }
+  return part;
+}
+
+std::vector<WeakTie> ties_of(const std::map<TieKey, TieSums>& sums,
+                             const Assumptions& assumptions) {
+  std::vector<WeakTie> ties;
+  for (const auto& [key, sum] : sums) {
+    const auto sets = static_cast<double>(sum.sets);
+    WeakTie& tie = ties.emplace_back();
+    std::tie(tie.kind, tie.first, tie.second) = key;
+    tie.sets = sum.sets;
+    tie.width_ms = sum.width_ms / sets;
+    tie.age_s = sum.age_s / sets;
+    const double rates_ppm =
+        assumptions.host_rate_ppm +
+        (tie.kind == LinkKind::kHosts ? assumptions.host_rate_ppm : assumptions.camera_rate_ppm);
+    // Either way, hence twice.
+    tie.drift_share = std::min(1.0, 2 * rates_ppm * 1e-3 * tie.age_s / tie.width_ms);
+  }
+  std::ranges::stable_sort(ties, std::ranges::greater{}, &WeakTie::sets);
+  return ties;
+}
+
+CertificateRow row_of(const std::string& pipeline, std::span<CapturePart> parts,
+                      const CertificateOptions& options) {
+  CertificateRow row{.pipeline = pipeline};
+  std::map<TieKey, TieSums> ties;
+  for (CapturePart& part : parts) {
+    if (!part.problem.empty()) {
+      row.problem = part.problem;
+      continue;
+    }
+    ++row.captures;
+    std::ranges::move(part.contradicted, std::back_inserter(row.contradicted));
+    std::ranges::copy(part.apart_ms, std::back_inserter(row.apart_ms));
+    row.impossible_sets += part.impossible_sets;
+    row.frames += part.frames;
+    row.frames_outside += part.frames_outside;
+    row.messages += part.messages;
+    row.unusable_messages += part.unusable_messages;
+    row.polls += part.polls;
+    for (const auto& [key, sum] : part.ties) {
+      TieSums& all = ties[key];
+      all.sets += sum.sets;
+      all.width_ms += sum.width_ms;
+      all.age_s += sum.age_s;
+    }
+  }
+  std::ranges::sort(row.apart_ms);
+  row.within = static_cast<std::size_t>(std::ranges::upper_bound(row.apart_ms, options.within_ms) -
+                                        row.apart_ms.begin());
+  row.weakest = ties_of(ties, options.assumptions);
+  return row;
+}
+
+}  // namespace
+
+double CertificateRow::certified_ms(double p) const {
+  if (apart_ms.empty()) return kNan;
+  // Between two unknown ones there is no interpolation.
+  const double above =
+      apart_ms[static_cast<std::size_t>(std::ceil(p * static_cast<double>(apart_ms.size() - 1)))];
+  return above == kUnknown ? kUnknown : quantile_of_sorted(apart_ms, p);
+}
+
+double CertificateRow::share_within() const {
+  if (apart_ms.empty()) return kNan;
+  return static_cast<double>(within) / static_cast<double>(apart_ms.size());
+}
+
+CertificateRun certify_pipelines(const scenarios::Scenario& scenario,
+                                 const SourceFactory& make_source,
+                                 const CertificateOptions& options, const Progress& progress) {
+  const std::vector<PipelineChoice> choices = choose_pipelines(scenario, options.pipelines);
+  std::vector<CapturePart> parts(choices.size() * options.seeds);
+  std::mutex mutex;
+  std::uint64_t done = 0;
+  const auto make_worker = [&]() -> Job {
+    const std::shared_ptr<RecordingSource> source = make_source();
+    return [&, source](std::size_t job) {
+      const PipelineChoice& choice = choices[job / options.seeds];
+      const std::uint64_t seed = options.first_seed + job % options.seeds;
+      run_named({scenario.name, choice.pipeline.name, seed},
+                [&] { parts[job] = certify_capture(scenario, choice, seed, *source, options); });
+      const std::scoped_lock lock(mutex);
+      if (progress) progress(++done, parts.size());
+    };
+  };
+  if (!run_jobs_with_workers(parts.size(), {.threads = options.jobs, .cancel = options.cancel},
+                             make_worker)) {
+    throw RecordingCancelled();
+  }
+  CertificateRun run{.scenario = scenario.name, .options = options, .rows = {}};
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    run.rows.push_back(row_of(choices[i].pipeline.name,
+                              std::span(parts).subspan(i * options.seeds, options.seeds), options));
+  }
+  return run;
+}
+
+}  // namespace simbench::evaluation

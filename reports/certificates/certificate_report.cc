@@ -1,0 +1,271 @@
+#include "reports/certificates/certificate_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "recording/counted.h"
+#include "reports/text/answer_json.h"
+#include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::CertificateRow;
+using evaluation::CertificateRun;
+using evaluation::ContradictedCapture;
+using evaluation::LinkKind;
+using evaluation::WeakTie;
+
+constexpr std::size_t kShownTies = 3;
+
+std::string certified_text(double ms) { return std::isinf(ms) ? "unknown" : time_text(ms); }
+
+std::string tie_name(const WeakTie& tie) {
+  return tie.kind == LinkKind::kCamera ? fmt::format("camera {} to host {}", tie.first, tie.second)
+                                       : fmt::format("host {} to host {}", tie.first, tie.second);
+}
+
+// What a tie is so wide for, and what would help.
+std::string cure_text(const WeakTie& tie) {
+  const bool is_camera = tie.kind == LinkKind::kCamera;
+  if (std::isinf(tie.width_ms)) {
+    return is_camera ? "nothing bounds it from both sides: record polls of the camera's clock"
+                     : "no messages went both ways: record a host_sync that exchanges them";
+  }
+  if (tie.drift_share > 0.5) {
+    return fmt::format("the nearest reading is {} away: {} more often", time_text(tie.age_s * 1e3),
+                       is_camera ? "poll" : "exchange");
+  }
+  return fmt::format("its quickest {} count: {}", is_camera ? "polls" : "messages",
+                     is_camera ? "poll over a quicker way, or state a least delay"
+                               : "stamp in the kernel or the card, or state a least delay");
+}
+
+std::string tie_text(const WeakTie& tie) {
+  return std::isinf(tie.width_ms) ? tie_name(tie)
+                                  : fmt::format("{}: {}", tie_name(tie), time_text(tie.width_ms));
+}
+
+std::string outside_text(const CertificateRow& row) {
+  if (row.frames == 0) return "-";
+  return fmt::format("{} of {}", row.frames_outside, row.frames);
+}
+
+Block certified_rows_block(const CertificateRun& run) {
+  const std::vector<Field<CertificateRow>> fields = {
+      pipeline_field<CertificateRow>(),
+      {{"sets"}, [](const auto& row) { return fmt::format("{}", row.apart_ms.size()); }},
+      {{"certified\nmedian"},
+       [](const auto& row) { return certified_text(row.certified_ms(0.5)); }},
+      {{"certified\n95 %"}, [](const auto& row) { return certified_text(row.certified_ms(0.95)); }},
+      {{"certified\nall"}, [](const auto& row) { return certified_text(row.certified_ms(1)); }},
+      {{fmt::format("within\n{}", time_text(run.options.within_ms))},
+       [](const auto& row) { return share_text(row.share_within()); }},
+      {{"truth\noutside"}, outside_text},
+      {{"captures\ncontradicted"},
+       [](const auto& row) {
+         return fmt::format("{} of {}", row.contradicted.size(), row.captures);
+       }},
+      {{"weakest tie", Align::kLeft}, [](const auto& row) {
+         return row.weakest.empty() ? std::string("-") : tie_text(row.weakest.front());
+       }}};
+  return {.heading = "Certificates",
+          .table = table_of(fields, run.rows),
+          .prose = {
+              "Certified: no two frames of a set were exposed further apart, whatever the delays "
+              "were, if what is assumed holds; the least such bound that follows from the "
+              "recording. Truth outside: frames of the sets whose true difference to another of "
+              "their set is beyond its interval, which a wrong assumption can make. Contradicted: "
+              "captures whose facts contradict each other."}};
+}
+
+Block ties_block(const CertificateRun& run) {
+  Block block{.heading = "What ties the widest pairs"};
+  for (const CertificateRow& row : run.rows) {
+    for (std::size_t i = 0; i < std::min(kShownTies, row.weakest.size()); ++i) {
+      const WeakTie& tie = row.weakest[i];
+      block.items.push_back(fmt::format("{}: {}, in {} of {} sets; {}", row.pipeline, tie_text(tie),
+                                        tie.sets, row.apart_ms.size(), cure_text(tie)));
+    }
+  }
+  return block;
+}
+
+std::string possible_text(const ContradictedCapture& capture) {
+  if (capture.possible_ppm == 0) {
+    return "no rates up to 1000 ppm explain it: a stamp or a least delay is wrong";
+  }
+  return fmt::format("with rates of +-{:g} ppm nothing contradicts", capture.possible_ppm);
+}
+
+std::optional<Block> contradictions_block(const CertificateRun& run) {
+  Block block{.heading = "Contradictions", .is_warning = true};
+  for (const CertificateRow& row : run.rows) {
+    if (row.contradicted.empty()) continue;
+    const ContradictedCapture& first = row.contradicted.front();
+    block.items.push_back(fmt::format("{}, seed {}: a chain of facts ends {} before it began; {}",
+                                      row.pipeline, first.seed, time_text(first.before_ms),
+                                      possible_text(first)));
+    for (const std::string& fact : first.chain) block.items.push_back("  " + fact);
+  }
+  if (block.items.empty()) return std::nullopt;
+  return block;
+}
+
+std::optional<Block> problems_block(const CertificateRun& run) {
+  Block block{.heading = "Without certificates", .is_warning = true};
+  for (const CertificateRow& row : run.rows) {
+    if (!row.problem.empty()) {
+      block.items.push_back(fmt::format("{}: {}", row.pipeline, row.problem));
+    } else if (row.impossible_sets > 0) {
+      block.items.push_back(
+          fmt::format("{}: no pulses of one trigger explain {}", row.pipeline,
+                      counted(static_cast<std::uint64_t>(row.impossible_sets), "set")));
+    }
+  }
+  if (block.items.empty()) return std::nullopt;
+  return block;
+}
+
+Block assumed_block(const CertificateRun& run) {
+  Block block{.heading = "What is assumed"};
+  for (const auto& line : evaluation::described(run.options.assumptions)) {
+    block.items.push_back(fmt::format("{} = {:g}: {}", line.name, line.value, line.means));
+  }
+  if (run.options.horizon == evaluation::Horizon::kCausal) {
+    block.prose.push_back("Each set knows only what came before its last exposure (--causal).");
+  }
+  return block;
+}
+
+// The row with the smallest bound for 95 % of its sets; null if none is bounded.
+const CertificateRow* best_of(const CertificateRun& run) {
+  const CertificateRow* best = nullptr;
+  for (const CertificateRow& row : run.rows) {
+    const double certified = row.certified_ms(0.95);
+    if (!std::isfinite(certified)) continue;
+    if (best == nullptr || certified < best->certified_ms(0.95)) best = &row;
+  }
+  return best;
+}
+
+std::string truth_text(const CertificateRun& run) {
+  std::size_t frames = 0, outside = 0;
+  for (const CertificateRow& row : run.rows) {
+    frames += row.frames;
+    outside += row.frames_outside;
+  }
+  if (frames == 0) return {};
+  if (outside == 0) return fmt::format("it lies within for all {} frames.", frames);
+  return fmt::format(
+      "it lies outside for {} of {} frames: an assumption is wrong there, and "
+      "nothing in the recording contradicts it.",
+      outside, frames);
+}
+
+std::string contradicted_text(const CertificateRun& run) {
+  std::size_t captures = 0;
+  for (const CertificateRow& row : run.rows) captures += row.contradicted.size();
+  if (captures == 0) return {};
+  return fmt::format("{} contradict what is assumed, and have no certificates; see below.",
+                     counted(static_cast<std::uint64_t>(captures), "capture"));
+}
+
+Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json tie_json(const WeakTie& tie) {
+  return {{"tie", tie.kind == LinkKind::kCamera ? "camera" : "hosts"},
+          {"first", tie.first},
+          {"second", tie.second},
+          {"sets", tie.sets},
+          {"width_ms", finite_json(tie.width_ms)},
+          {"age_s", finite_json(tie.age_s)},
+          {"drift_share", finite_json(tie.drift_share)}};
+}
+
+Json certified_row_json(const CertificateRow& row) {
+  Json json = {{"pipeline", row.pipeline},
+               {"problem", row.problem.empty() ? Json(nullptr) : Json(row.problem)},
+               {"captures", row.captures},
+               {"sets", row.apart_ms.size()},
+               {"certified_ms",
+                {{"p50", finite_json(row.certified_ms(0.5))},
+                 {"p95", finite_json(row.certified_ms(0.95))},
+                 {"max", finite_json(row.certified_ms(1))}}},
+               {"within", row.within},
+               {"within_share", finite_json(row.share_within())},
+               {"messages", row.messages},
+               {"unusable_messages", row.unusable_messages},
+               {"polls", row.polls},
+               {"frames", row.frames == 0 ? Json(nullptr) : Json(row.frames)},
+               {"truth_outside", row.frames == 0 ? Json(nullptr) : Json(row.frames_outside)},
+               {"impossible_sets", row.impossible_sets}};
+  json["weakest"] = Json::array();
+  for (const WeakTie& tie : row.weakest) json["weakest"].push_back(tie_json(tie));
+  json["contradicted"] = Json::array();
+  for (const ContradictedCapture& capture : row.contradicted) {
+    json["contradicted"].push_back(
+        {{"seed", capture.seed},
+         {"before_ms", capture.before_ms},
+         {"chain", capture.chain},
+         {"possible_ppm", capture.possible_ppm == 0 ? Json(nullptr) : Json(capture.possible_ppm)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+AnswerText certificate_answer(const CertificateRun& run) {
+  AnswerText answer;
+  const CertificateRow* const best = best_of(run);
+  if (best == nullptr) {
+    answer.lead =
+        "Nothing is certified: no pipeline's recording bounds how far the frames of its "
+        "sets are apart.";
+  } else {
+    answer.lead = fmt::format(
+        "{}: in 95 % of its sets no two frames were exposed more than {} "
+        "apart, whatever the delays were.",
+        best->pipeline, time_text(best->certified_ms(0.95)));
+    const WeakTie& tie = best->weakest.front();
+    answer.add("Weakest", fmt::format("{}; {}.", tie_text(tie), cure_text(tie)));
+  }
+  answer.add("Truth", truth_text(run));
+  answer.add("Contradictions", contradicted_text(run));
+  return answer;
+}
+
+Document certificate_document(const CertificateRun& run) {
+  Document document{.title = fmt::format("{}: {}", run.scenario,
+                                         counted_seeds(run.options.first_seed, run.options.seeds))};
+  document.head = paragraphs(certificate_answer(run));
+  document.blocks.push_back(certified_rows_block(run));
+  add(contradictions_block(run), document.blocks);
+  add(problems_block(run), document.blocks);
+  document.blocks.push_back(ties_block(run));
+  document.blocks.push_back(assumed_block(run));
+  return document;
+}
+
+Json certificate_json(const CertificateRun& run) {
+  Json root = new_document();
+  root["answer"] = answer_json(certificate_answer(run));
+  root["scenario"] = run.scenario;
+  root["seeds"] = {{"first", run.options.first_seed}, {"count", run.options.seeds}};
+  root["horizon"] = run.options.horizon == evaluation::Horizon::kWhole ? "whole" : "causal";
+  root["within_ms"] = run.options.within_ms;
+  root["assumptions"] = Json::object();
+  for (const auto& line : evaluation::described(run.options.assumptions)) {
+    root["assumptions"][line.name] = line.value;
+  }
+  root["rows"] = Json::array();
+  for (const CertificateRow& row : run.rows) root["rows"].push_back(certified_row_json(row));
+  return root;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,26 @@
+// Certificates (evaluation/certificates) as text, Markdown, LaTeX or JSON: first a sentence that
+// answers, then a row for each pipeline, what ties the widest pairs, contradictions with the facts
+// that prove them, and what was assumed.
+//
+// JSON: {"schema_version", "version", "commit", "answer" (reports/text/answer_json.h), "scenario",
+// "seeds": {"first", "count"}, "horizon": "whole" | "causal", "within_ms", "assumptions": {name:
+// value}, "rows": [{"pipeline", "problem": text or null, "captures", "sets", "certified_ms":
+// {"p50", "p95", "max"}, "within", "within_share", "messages", "unusable_messages", "polls",
+// "frames", "truth_outside", "impossible_sets", "weakest": [{"tie": "camera" | "hosts", "first",
+// "second", "sets", "width_ms", "age_s", "drift_share"}], "contradicted": [{"seed", "before_ms",
+// "chain": [text], "possible_ppm"}]}]}; what is unknown or does not exist is null, "frames" and
+// "truth_outside" too where no truth is known.
+#pragma once
+
+#include "evaluation/certificates/certificate_run.h"
+#include "reports/text/answer_text.h"
+#include "reports/text/block.h"
+#include "reports/text/json_node.h"
+
+namespace simbench::reports {
+
+AnswerText certificate_answer(const evaluation::CertificateRun& run);
+Document certificate_document(const evaluation::CertificateRun& run);
+Json certificate_json(const evaluation::CertificateRun& run);
+
+}  // namespace simbench::reports

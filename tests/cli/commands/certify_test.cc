@@ -1,0 +1,114 @@
+// `simbench certify` through the real program.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class CertifyCommand : public ProgramTest {
+ protected:
+  // A small rig on a LAN.
+  static std::vector<std::string> rig(std::vector<std::string> options) {
+    std::vector<std::string> arguments = {
+        "certify", "18cam_6host_45fps_lan", "--pipelines", "two_way_hull",
+        "--set",   "/cameras/count=6",      "--set",       "/hosts/count=2",
+        "--set",   "/timeline/frames=20",   "--set",       "/timeline/warm_up_ms=200"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
+  }
+};
+
+TEST_F(CertifyCommand, AnswersFirst) {
+  const ProgramResult result = run(rig({}));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("two_way_hull: in 95 % of its sets no two frames were exposed more "
+                              "than "),
+                    HasSubstr("Truth: it lies within for all 120 frames."),
+                    HasSubstr("host_rate_ppm = 50: ")));
+}
+
+TEST_F(CertifyCommand, JsonHasAssumptionsRowsAndTruth) {
+  const ProgramResult result = run(rig({"--json", "--host-rate-ppm", "20", "--within", "5ms"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json root = Json::parse(result.out);
+  EXPECT_EQ(root["assumptions"]["host_rate_ppm"], 20.0);
+  EXPECT_EQ(root["assumptions"]["message_ms"], 0.0);
+  EXPECT_EQ(root["within_ms"], 5.0);
+  ASSERT_EQ(root["rows"].size(), 1U);
+  const Json& row = root["rows"][0];
+  EXPECT_EQ(row["sets"], 20);
+  EXPECT_EQ(row["frames"], 120);
+  EXPECT_EQ(row["truth_outside"], 0);
+  EXPECT_EQ(row["within"], 20);
+  EXPECT_LE(row["certified_ms"]["p50"], row["certified_ms"]["p95"]);
+  EXPECT_LE(row["certified_ms"]["p95"], row["certified_ms"]["max"]);
+  EXPECT_TRUE(row["contradicted"].empty());
+  EXPECT_GT(row["weakest"].size(), 0U);
+}
+
+TEST_F(CertifyCommand, SameBytesOnOneThreadAndTwo) {
+  const ProgramResult one = run(rig({"--json", "--seeds", "3", "--jobs", "1"}));
+  const ProgramResult two = run(rig({"--json", "--seeds", "3", "--jobs", "2"}));
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_EQ(one.out, two.out);
+}
+
+TEST_F(CertifyCommand, ARequirementThatIsNotMetIsStatusThree) {
+  EXPECT_EQ(run(rig({"--within", "5ms", "--require", "100"})).status, 0);
+  EXPECT_EQ(run(rig({"--within", "1us", "--require", "1"})).status, 3);
+}
+
+TEST_F(CertifyCommand, AWrongAssumptionIsProved) {
+  const ProgramResult result = run(rig({"--set", "/hosts/clock/skew_of_host_ppm=[300,-300]",
+                                        "--set", "/timeline/warm_up_ms=3000", "--require", "0"}));
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("Contradictions"), HasSubstr(" before it began"),
+                                HasSubstr("with rates of +-500 ppm nothing contradicts"),
+                                HasSubstr("a message sent by host")));
+}
+
+// A recorded folder has the certificates of its run.
+TEST_F(CertifyCommand, ARecordingHasThoseOfItsRun) {
+  const std::vector<std::string> world = {"--set", "/cameras/count=6",   "--set", "/hosts/count=2",
+                                          "--set", "/timeline/frames=20"};
+  std::vector<std::string> record = {"record",      "--scenario",   "18cam_6host_45fps_lan",
+                                     "--pipelines", "two_way_hull", "--seeds",
+                                     "1",           "-o",           "monday"};
+  record.insert(record.end(), world.begin(), world.end());
+  ASSERT_EQ(run(record).status, 0);
+  std::vector<std::string> certify = {"certify", "18cam_6host_45fps_lan", "--pipelines",
+                                      "two_way_hull", "--json"};
+  certify.insert(certify.end(), world.begin(), world.end());
+  const ProgramResult of_run = run(certify);
+  const ProgramResult of_folder = run({"certify", "monday", "--json"});
+  ASSERT_EQ(of_folder.status, 0) << of_folder.err;
+  EXPECT_EQ(Json::parse(of_run.out)["rows"], Json::parse(of_folder.out)["rows"]);
+}
+
+TEST_F(CertifyCommand, BadInputIsNamed) {
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_THAT(result.err, AllOf(StartsWith("error: "), HasSubstr(message)));
+  };
+  refused(rig({"--within", "1"}), "--within: found '1', allowed: a time above 0 with its unit");
+  refused(rig({"--trigger-spread-us", "1"}), "--common-trigger");
+  refused({"certify", "no_such_rig"}, "no_such_rig");
+  refused({"certify", "18cam_6host_45fps_lan", "--pipelines", "nothing"}, "nothing");
+}
+
+}  // namespace
+}  // namespace simbench
