@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "algorithms/device_time/unwrap.h"
 #include "recording/line_reader.h"
@@ -182,13 +183,11 @@ std::vector<StampedFrame> read_ibl_recording(const std::string& path) {
   }
 }
 
-std::string rs_csv_text(const std::vector<StampedFrame>& frames) {
-  std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
-  for (const StampedFrame& frame : frames) {
-    fmt::format_to(std::back_inserter(text), "Color,0,{},{},{}\n", frame.counter,
-                   ms_text(frame.sensor), ms_text(frame.arrival));
-  }
-  return text;
+RecordedStream ibl_stream(std::vector<StampedFrame> frames) {
+  RecordedStream stream;
+  stream.stream = "Color 0";
+  stream.frames = std::move(frames);
+  return stream;
 }
 
 }  // namespace simbench::app

@@ -33,7 +33,7 @@ std::vector<StampedFrame> read_ibl_recording(const std::string& path);
 // Reads the content of a *.frameData.bin.
 std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std::string& path);
 
-// The CSV that recording/rs_csv.h reads.
-std::string rs_csv_text(const std::vector<StampedFrame>& frames);
+// Its frames as a stream, for rs_csv_text().
+RecordedStream ibl_stream(std::vector<StampedFrame> frames);
 
 }  // namespace simbench::app

@@ -3,6 +3,7 @@
 #include "app/ibl_recording.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "recording/rs_csv_text.h"
 
 namespace simbench::cli {
 namespace {
@@ -26,7 +27,8 @@ void add_convert_ibl_command(CommandLine& line) {
   command.text("file", "FILE", *file, "*.timestamps.ssv or *.frameData.bin").required();
   command.footer(kExplanation);
   command.runs([file] {
-    print_result(app::rs_csv_text(app::read_ibl_recording(*file)));
+    const RecordedStream stream = app::ibl_stream(app::read_ibl_recording(*file));
+    print_result(rs_csv_text({&stream, 1}));
     return kOk;
   });
 }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "app/host_logs.h"
+#include "app/pack.h"
+#include "app/recorded_streams.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
@@ -35,6 +37,7 @@ Examples:
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
   simbench diagnose rig.csv --html rig.html            the same as a page
   simbench diagnose *.bag --clock-log hostA=ptp4l.log --clock-log hostB=tracking.log
+  simbench diagnose *.bag --pack for_you               stamps without images and names
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
 Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input, 130 interrupted.)";
@@ -47,8 +50,19 @@ struct DiagnoseArguments {
   bool one_host = false;
   std::vector<std::string> clock_logs;
   std::string html;
+  std::string pack;
   std::vector<std::string> command;
 };
+
+// What somebody else may see of the recording.
+void write_pack(const DiagnoseArguments& options, const RecordedStreams& rig,
+                const std::vector<evaluation::HostLog>& logs) {
+  const auto folder = app::recording_folder_of(options.files);
+  const app::Pack packed = folder ? app::pack_recording(*folder, options.pack)
+                                  : app::pack_streams(rig, logs, options.pack);
+  for (const std::string& note : packed.notes) print_note(note);
+  print_note(options.pack + " written: no images, no names; the times are as recorded");
+}
 
 int run_diagnose(const DiagnoseArguments& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
@@ -57,6 +71,7 @@ int run_diagnose(const DiagnoseArguments& options) {
   if (!rig) return kInterrupted;
   app::HostLogs clocks = app::host_logs(options.clock_logs);
   for (const std::string& note : clocks.notes) print_note(note);
+  if (!options.pack.empty()) write_pack(options, *rig, clocks.logs);
   const evaluation::Diagnosis diagnosis =
       evaluation::diagnose(rig->streams, {.rate_hz = options.rate_hz,
                                           .one_host = options.one_host,
@@ -92,6 +107,9 @@ void add_diagnose_command(CommandLine& line) {
   command.output("--html", "FILE.html", options->html,
                  "Write a page, too: the answer, how each camera's phase moves, the tables. It\n"
                  "is one file, which opens offline");
+  command.output("--pack", "DIR", options->pack,
+                 "Write the stamps, too, for somebody else to look at: a new folder without\n"
+                 "images, names and paths, of which `simbench diagnose` says the same");
   command.footer(kDiagnoseExamples);
   command.runs([options] { return run_diagnose(*options); });
 }

@@ -6,7 +6,7 @@ import json
 from typing import Any, Dict, List, Optional, Sequence, Union
 
 from . import _simbench
-from .command import Paths, paths_of, repeated
+from .command import Paths, joined, paths_of, repeated, run_command, words_of
 from .errors import InputError
 from .progress import Progress
 from .results import Path, Result, _warn
@@ -183,6 +183,7 @@ def diagnose(
     topics: Sequence[str] = (),
     columns: Optional[str] = None,
     html: Optional[Path] = None,
+    pack: Optional[Path] = None,
     clock_logs: Sequence[str] = (),
     progress: Optional[bool] = None,
 ) -> Diagnosis:
@@ -193,6 +194,8 @@ def diagnose(
     one_host: one computer stamped all arrivals.
     clock_log: logs of the hosts' clocks, "HOST=FILE" each, or a file alone; clock_logs: the same.
     html: a file for the page, as Diagnosis.save_html() writes it.
+    pack: a new folder for the stamps alone, without images and names, for somebody else to look at;
+        what is called what are warnings.
     progress: show it; None: where tqdm is installed and somebody looks.
     """
     paths = paths_of("recordings", recordings)
@@ -207,4 +210,8 @@ def diagnose(
     _warn(found.notes)
     if html is not None:
         found.save_html(html)
+    if pack is not None:
+        options = words_of(topics=joined("topics", topics), columns=columns, clock_log=logs,
+                           pack=pack)
+        _warn(run_command("diagnose", options, paths, formats=["json"]).notes)
     return found

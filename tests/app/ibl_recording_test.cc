@@ -15,6 +15,7 @@
 #include "evaluation/frames/camera_statistics.h"
 #include "evaluation/frames/frame_account.h"
 #include "recording/rs_csv.h"
+#include "recording/rs_csv_text.h"
 #include "tests/data/ibl_recordings.h"
 #include "tests/read_fault.h"
 #include "tests/scratch_folder.h"
@@ -160,7 +161,8 @@ TEST(IblRecording, EveryStampOfAGeneratedRecordingIsRead) {
 
 std::vector<RecordedStream> through_csv(const std::string& path) {
   CsvRecordingReader reader;
-  reader.read_text(rs_csv_text(read_ibl_recording(path)), "body.csv");
+  const RecordedStream stream = ibl_stream(read_ibl_recording(path));
+  reader.read_text(rs_csv_text({&stream, 1}), "body.csv");
   return reader.take();
 }
 

@@ -90,6 +90,18 @@ class RigsTest(unittest.TestCase):
         )
         self.assertGreater(len(result.frames("raw_arrival")), 100)
 
+    def test_a_pack_has_the_stamps_and_no_names(self):
+        rig = os.path.join(self.folder.name, "secret.csv")
+        with open(rig, "w", encoding="utf-8") as file:
+            file.write("Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n")
+            file.writelines(f"Depth,0,{i},{33.3 * i:.3f},{33.3 * i + 9:.3f}\n" for i in range(99))
+        folder = os.path.join(self.folder.name, "for_you")
+        quietly(simbench.diagnose, rig, pack=folder)
+        with open(os.path.join(folder, "frames.csv"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn("camera0", text)
+        self.assertNotIn("secret", text)
+
     def test_errors_are_the_commands(self):
         missing = os.path.join(self.folder.name, "none.csv")
         said = command.simbench("diagnose", missing, status=2)
