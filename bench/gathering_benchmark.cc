@@ -68,6 +68,14 @@ void gather(benchmark::State& state, const GatheringEntry& entry, const Stream& 
                                     .pulses = coded_pulses()});
   CountSets sink;
   std::int64_t pulse = 0;
+  // Not of interest: queues that grow, and the search for a place in the code.
+  constexpr std::int64_t kWarmUpPulses = 60;
+  for (; pulse < kWarmUpPulses; ++pulse) {
+    for (std::uint32_t source = 0; source < sources; ++source) {
+      gatherer->push(frame_of(pulse, source, stream.noise_us), sink);
+    }
+  }
+  sink = CountSets();
   for (auto iteration : state) {
     const bool lossy = stream.lost_every > 0 && pulse % stream.lost_every == 0;
     const std::int64_t lost = lossy ? pulse % sources : -1;

@@ -87,6 +87,9 @@ void CodeDecoder::take_place() {
     const double since = static_cast<double>(at_ns - at_ns_) / step_ns_;
     const double ahead = static_cast<double>(index_ - first_index_ - slots) + since;
     first_index_ += length_ * saturate_round(ahead / static_cast<double>(length_));
+  } else if (first_index_ + slots >= length_) {
+    // What came before pulse 0, a frame of a camera that ran free, is not of the cycle's end.
+    first_index_ -= length_;
   }
   index_ = first_index_ + slots;
   place_ = static_cast<std::int64_t>(pulses_->code.place(index_));

@@ -10,8 +10,9 @@
 // Nothing is guessed: a frame has the index that the code says, or none.
 //
 // An index counts from pulse 0 of the code's first cycle. What comes a whole cycle later looks
-// alike, so a camera's first place is within that cycle; from then on the camera's own clock counts
-// the cycles, also through losses. Who knows better moves the camera by whole cycles.
+// alike, so the place of the frame with which a camera's search ends is within that cycle, and
+// those before it may be negative; from then on the camera's own clock counts the cycles, also
+// through losses. Who knows better moves the camera by whole cycles.
 //
 // The stamp of a frame is of the middle of its exposure. Half of the exposure is taken off or
 // added, whichever gives the instant that follows the pulse by a constant time (coded_pulses.h), so

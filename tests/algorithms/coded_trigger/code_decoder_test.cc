@@ -174,6 +174,19 @@ TEST(CodeDecoder, ThePlaceIsFoundAgainBehindFreeRunning) {
   EXPECT_EQ(indices.searches, 2U);
 }
 
+TEST(CodeDecoder, AFrameBeforeTheFirstPulseIsNotOfTheCyclesEnd) {
+  const auto pulses = usual_pulses();
+  auto frames = coded_frames(*pulses, {.offset_us = 1e6}, 200, 1);
+  // It ran free, by chance a period ahead of the pulse.
+  CodedFrame free_running = frames.front();
+  free_running.sensor -= Microseconds(11'130);
+  frames.insert(frames.begin(), free_running);
+  CodeDecoder decoder(pulses, {});
+  const Indices indices = decode(decoder, frames);
+  EXPECT_EQ(*indices.all[1], 0);
+  EXPECT_EQ(*indices.all.back(), 199);
+}
+
 TEST(CodeDecoder, OneFrameInTheWrongPlaceEndsNothing) {
   const auto pulses = usual_pulses();
   auto frames = coded_frames(*pulses, {}, 400, 3);

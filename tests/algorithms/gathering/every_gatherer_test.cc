@@ -113,7 +113,7 @@ std::vector<GatherFrame> noisy_frames(std::uint32_t sources, std::int64_t pulses
       if (uniform(random) < drop) continue;
       arrivals.push_back({last_ms, frame_at(source, stamp_ms, pulse)});
       // Genlock and a coded trigger count from here: half-period noise is not what they are for.
-      arrivals.back().frame.sensor = pulse_frame(source, pulse).sensor;
+      arrivals.back().frame.sensor = pulse_frame(source, pulse + 1).sensor;
     }
   }
   std::ranges::stable_sort(arrivals, {}, &Arrival::at_ms);
