@@ -37,6 +37,7 @@
   FILE(DeviceTimeEntry, device_time_librealsense_global)          \
   FILE(DeviceTimeEntry, device_time_host_stamps)                  \
   FILE(DeviceTimeEntry, device_time_rocsync_led)                  \
+  FILE(DeviceTimeEntry, device_time_coded)                        \
   FILE(GatheringEntry, gathering_yoon2021)                        \
   FILE(GatheringEntry, gathering_genlock)                         \
   FILE(GatheringEntry, gathering_approximate_time)                \
@@ -44,6 +45,7 @@
   FILE(GatheringEntry, gathering_librealsense)                    \
   FILE(GatheringEntry, gathering_k4a)                             \
   FILE(GatheringEntry, gathering_phase_binning)                   \
+  FILE(GatheringEntry, gathering_coded_trigger)                   \
   FILE(GatheringEntry, gathering_oracle)
 
 namespace simbench {

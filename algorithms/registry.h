@@ -49,6 +49,7 @@ enum class Need : std::uint8_t {
   kPolls,           // polls of the cameras' clocks in the recording
   kHostStamps,      // cameras that stamp with their host's steady clock
   kLedClock,        // sightings of a clock of LEDs in the recording
+  kTriggerCode,     // GatheringSetup::pulses, DeviceTimeEstimator::on_coded_pulses()
   kTruth,           // the truth: simulation only
 };
 

@@ -227,6 +227,10 @@ class FigureMaker {
     }
     const FigureSource source = source_of_repeated_run();
     for (const RunDetail& run : runs) add(reports::run_figures(run), source);
+    if (options_.figures == std::vector<std::string>{reports::kCodeFigure} &&
+        !scenario.trigger.code) {
+      note("the scenario's trigger has no code (/trigger/code)");
+    }
     if (runs.empty()) return;
     std::vector<Figure> compared = reports::seed_figures(runs);
     if (!with_clocks)

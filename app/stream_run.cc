@@ -227,7 +227,7 @@ std::vector<std::string> device_times_of_stamps() {
   for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     const bool needs_more = std::ranges::any_of(entry.info.needs, [](Need need) {
       return need == Need::kPolls || need == Need::kHostStamps || need == Need::kLedClock ||
-             need == Need::kTruth;
+             need == Need::kTriggerCode || need == Need::kTruth;
     });
     if (entry.make && !needs_more) names.push_back(entry.info.name);
   }

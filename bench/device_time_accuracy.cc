@@ -72,7 +72,7 @@ void print_table(std::uint32_t seeds) {
   for (const DeviceTimeEntry& entry : algorithms<DeviceTimeEntry>()) {
     const std::string& family = entry.info.family;
     if (!entry.make || family == "eq1" || family == "sensor_normalised" ||
-        family == "host_stamps" || family == "rocsync_led") {
+        family == "host_stamps" || family == "rocsync_led" || family == "coded_trigger") {
       continue;
     }
     fmt::print("| {:22} |", entry.info.name);

@@ -95,7 +95,8 @@ const std::vector<CommandGroup>& command_groups() {
        {cli::add_keygen_command, cli::add_node_command, cli::add_validate_model_command,
         cli::add_reality_command, cli::add_relay_command}},
       {"Scenarios and algorithms",
-       {cli::add_list_command, cli::add_describe_command, cli::add_validate_command}},
+       {cli::add_list_command, cli::add_describe_command, cli::add_validate_command,
+        cli::add_code_command}},
       // Last: `manual` lists the commands before it.
       {"The command line itself",
        {cli::add_help_command, cli::add_completion_command, cli::add_manual_command}}};

@@ -22,6 +22,7 @@
 #include "scenarios/scenario_json.h"
 #include "scenarios/schema.h"
 #include "scenarios/schema_walk.h"
+#include "scenarios/trigger_code.h"
 #include "scenarios/wifi_checks.h"
 
 namespace simbench::scenarios {
@@ -485,6 +486,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_load(scenario);
   check_streams(scenario);
   check_camera_models(scenario);
+  check_trigger_code(scenario);
   check_shutters(scenario);
   check_calibrations(scenario);
   check_auto_exposure(scenario);

@@ -43,6 +43,7 @@ struct LedSample {
   Nanoseconds led{};    // the middle of its lit LEDs, from the zero of the LED clock
 };
 
+struct CodedPulses;  // algorithms/coded_trigger/coded_pulses.h
 class EstimatorBank;
 
 class DeviceTimeEstimator {
@@ -64,6 +65,8 @@ class DeviceTimeEstimator {
   virtual void on_adjustment(const ClockAdjustment& /*adjustment*/) {}
   // A sighting of the LED clock, after its frame and likewise; also in the warm-up.
   virtual void on_led_sighting(const LedSample& /*sighting*/) {}
+  // What the trigger's pulses are, if they are coded: once, before anything else.
+  virtual void on_coded_pulses(const std::shared_ptr<const CodedPulses>& /*pulses*/) {}
   // True if stamps count from the camera's own first frame, or from another zero that all cameras
   // share, instead of a host's zero; to combine cameras, add one common anchor.
   virtual bool relative() const { return false; }

@@ -28,6 +28,9 @@ class Adapter : public DeviceTimeEstimator {
     inner_->on_adjustment(adjustment);
   }
   void on_led_sighting(const LedSample& sighting) override { inner_->on_led_sighting(sighting); }
+  void on_coded_pulses(const std::shared_ptr<const CodedPulses>& pulses) override {
+    inner_->on_coded_pulses(pulses);
+  }
   bool relative() const override { return inner_->relative(); }
 
  protected:

@@ -12,15 +12,17 @@
 #include <memory>
 #include <vector>
 
+#include "algorithms/coded_trigger/code_search.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/gathering/genlock_order.h"
 
 namespace simbench {
 
-inline constexpr std::uint32_t kRosQueue = 10;           // per topic, of its tests
-inline constexpr std::uint32_t kK4aQueue = 16;           // 15, and the frame that is compared
-inline constexpr std::uint32_t kLibrealsenseQueue = 10;  // QUEUE_MAX_SIZE
-inline constexpr std::uint32_t kPhaseBinningSlots = 64;  // an assumption: no program is meant
+inline constexpr std::uint32_t kRosQueue = 10;            // per topic, of its tests
+inline constexpr std::uint32_t kK4aQueue = 16;            // 15, and the frame that is compared
+inline constexpr std::uint32_t kLibrealsenseQueue = 10;   // QUEUE_MAX_SIZE
+inline constexpr std::uint32_t kPhaseBinningSlots = 64;   // an assumption: no program is meant
+inline constexpr std::uint32_t kCodedTriggerQueue = 256;  // as many as a camera may hold back
 
 // Gathering by Algorithm 3 of the paper, as a streaming class.
 //
@@ -168,6 +170,31 @@ std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup,
 inline constexpr double kPhaseDecay = 0.98;
 std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setup,
                                                       double decay = kPhaseDecay);
+
+// Gathering by a coded trigger: a set is the frames of one pulse, which each camera's own sensor
+// stamps name (coded_trigger/code_decoder.h).
+//
+// Needs GatheringSetup::pulses. Global stamps, arrivals and hosts' clocks are ignored, and the
+// cameras may start at any time. A source whose place in the code is not known yet holds its frames
+// back; when it is found, they are gathered too. A frame whose stamp is not where the code has a
+// pulse is discarded: it is in no set.
+//
+// A code names a pulse within one of its cycles. A source that finds its place takes the cycle that
+// brings it nearest to the source that delivered last: frames of one pulse must come within half of
+// the code's span of each other, which is many seconds. From then on its own clock counts.
+//
+// What to expect: sets do not cross, and none is mixed but with settings.error_probability a source
+// and search, if the stamps' noise is what is stated. Until the last source has found its place no
+// set comes, and other sources' frames wait for it, kCodedTriggerQueue of each; their oldest are
+// discarded.
+//
+// search() says how long it took and how sure the places are.
+//
+// Complexity: O(1) per frame once a place is known, else O(length of the code); sets as
+// gathering/fronts.h. Memory: 48 bytes a source and pulse of the code, and the queues.
+// Source: docs/coded_trigger.md.
+std::unique_ptr<Gatherer> make_coded_trigger_gatherer(const GatheringSetup& setup,
+                                                      const CodeDecoderSettings& settings);
 
 // Gathering by the truth: a set is the frames that one trigger pulse exposed.
 //

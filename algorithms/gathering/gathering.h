@@ -12,7 +12,9 @@
 //   gatherer->push({.source = 3, .stamp = stamp, .tag = frame_index}, set_sink);
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -20,8 +22,11 @@
 
 namespace simbench {
 
+struct CodedPulses;  // algorithms/coded_trigger/coded_pulses.h
+
 struct GatherFrame {
   std::uint32_t source = 0;
+  std::uint32_t exposure_us = 0;
   GlobalTime stamp{};
   GlobalTime arrival{};  // when its host had it, on the global scale
   DeviceTime sensor{};   // unwrapped, for gatherers that order by device time
@@ -53,6 +58,29 @@ struct GatheringSetup {
   Nanoseconds interval{};  // T_int, largest range of a set
   // Frames that may wait per source, at least 1; empty: the policy's own.
   std::optional<std::uint32_t> queue_limit{};
+  // What the trigger's pulses are, if they are coded; else null.
+  std::shared_ptr<const CodedPulses> pulses{};
+};
+
+// How the places of the sources in a trigger's code were found: counts, and the worst of all.
+struct PlaceSearch {
+  std::uint32_t sources = 0;
+  std::uint32_t found = 0;         // of them
+  std::uint32_t again = 0;         // searches beyond the first of a source
+  std::uint32_t frames = 0;        // that the newest search of a source took
+  double seconds = 0;              // that these took, on its camera's clock
+  double since_first_frame_s = 0;  // until then, from the source's first frame
+  double error_probability = 0;    // that a place is wrong
+
+  void add(const PlaceSearch& other) {
+    sources += other.sources;
+    found += other.found;
+    again += other.again;
+    frames = std::max(frames, other.frames);
+    seconds = std::max(seconds, other.seconds);
+    since_first_frame_s = std::max(since_first_frame_s, other.since_first_frame_s);
+    error_probability = std::max(error_probability, other.error_probability);
+  }
 };
 
 class Gatherer {
@@ -71,6 +99,8 @@ class Gatherer {
   // True for a gatherer that counts from a camera's first frame: it gets the warm-up too, in which
   // `stamp` is the bare arrival unless the estimator runs there as well.
   virtual bool from_first_frame() const { return false; }
+  // How it found its sources' places in the trigger's code, so far; nothing if it looks for none.
+  virtual std::optional<PlaceSearch> search() const { return std::nullopt; }
 };
 
 // The base of a gatherer whose blocks shall cost no virtual call per frame:

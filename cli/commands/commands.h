@@ -78,6 +78,8 @@ void add_list_command(CommandLine& line);
 void add_describe_command(CommandLine& line);
 // Scenario files checked without running them.
 void add_validate_command(CommandLine& line);
+// A coded trigger: its pulses, what cameras make of them, its table for a timer.
+void add_code_command(CommandLine& line);
 
 // Texts about the command line itself. `manual` knows the commands that were added before it.
 void add_help_command(CommandLine& line);

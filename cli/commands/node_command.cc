@@ -106,6 +106,7 @@ const char* lacking(Need need) {
     case Need::kPolls:
     case Need::kHostStamps:
     case Need::kLedClock:
+    case Need::kTriggerCode:
     case Need::kFrames:
     case Need::kFrameControl:  // cameras say so themselves
       break;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/coded_trigger/coded_pulses.h"
 #include "algorithms/parameters.h"
 #include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
@@ -24,6 +25,7 @@
 #include "scenarios/camera_groups.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
+#include "scenarios/trigger_code.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -147,7 +149,10 @@ void check_can_be_made(const Scenario& scenario, const PipelineChoice& choice) {
   try_to_make(choice.host_sync);
   try_to_make(choice.capture_alignment);
   try_to_make(choice.device_time);
-  try_to_make(choice.gathering, GatheringSetup{.sources = 1, .period = period, .interval = period});
+  try_to_make(
+      choice.gathering,
+      GatheringSetup{
+          .sources = 1, .period = period, .interval = period, .pulses = coded_pulses(scenario)});
 }
 
 std::string stage_pointer(std::size_t pipeline, PipelineStage stage) {
@@ -226,6 +231,8 @@ std::string lacking(const Scenario& scenario, Need need) {
       return scenario.cameras.led_clock
                  ? ""
                  : "a clock of LEDs that the cameras see (there is no /cameras/led_clock)";
+    case Need::kTriggerCode:
+      return scenario.trigger.code ? "" : "a coded trigger (there is no /trigger/code)";
     case Need::kFrames:
     case Need::kTruth:
       return "";
@@ -379,6 +386,13 @@ void check_published_figures(const Scenario& scenario) {
 
 }  // namespace
 
+std::shared_ptr<const CodedPulses> coded_pulses(const Scenario& scenario) {
+  const std::optional<TriggerCode> code = scenarios::trigger_code(scenario.trigger);
+  if (!code) return nullptr;
+  return std::make_shared<const CodedPulses>(
+      CodedPulses{.code = *code, .exposures_begin_at_pulse = scenario.cameras.begins_at_pulse()});
+}
+
 void set_program_maker(ProgramMaker maker) { program_maker() = std::move(maker); }
 
 std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
@@ -455,16 +469,20 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
     setup.pulses_per_frame = scenario.pulses_per_passed_frame(*scored);
   }
   count_unequal_rates(scenario, setup);
-  setup.make_gatherer = [chosen = choice.gathering](const GatheringSetup& gathering) {
+  const std::shared_ptr<const CodedPulses> pulses = coded_pulses(scenario);
+  setup.make_gatherer = [chosen = choice.gathering, pulses](GatheringSetup gathering) {
+    gathering.pulses = pulses;
     return chosen.make(gathering);
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.can_be_made()) {
     setup.make_estimator = [chosen = choice.device_time, variants = choice.device_time_variants,
                             groups = scenarios::group_of_cameras(scenario.cameras),
-                            delays = delays_of(scenario, choice)](std::size_t camera) {
+                            delays = delays_of(scenario, choice), pulses](std::size_t camera) {
       const std::size_t group = delays.size() == 1 ? 0 : groups.at(camera);
-      return make_variant(variants, chosen.make(), delays[group]);
+      auto estimator = make_variant(variants, chosen.make(), delays[group]);
+      if (pulses) estimator->on_coded_pulses(pulses);
+      return estimator;
     };
   }
   const DeviceTimeEntry* offline = find_algorithm<DeviceTimeEntry>("regression_offline");

@@ -91,6 +91,10 @@ void set_program_maker(ProgramMaker maker);
 std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario,
                                              const std::vector<std::string>& names);
 
+// What is known of the scenario's trigger for those that find a frame's pulse by its code; null
+// without /trigger/code.
+std::shared_ptr<const CodedPulses> coded_pulses(const scenarios::Scenario& scenario);
+
 // Returns the scenario that states how the pipeline is scored in captures of `scenario`.
 const scenarios::Scenario& scoring_scenario(const scenarios::Scenario& scenario,
                                             const PipelineChoice& choice);

@@ -370,6 +370,7 @@ RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& 
   run.seed = seed;
   run.stream = scenario.evaluation.stream;
   run.sync_mode = scenario.cameras.sync_mode;
+  run.pulses_code = coded_pulses(scenario);
   const ScorerSetup setup = scorer_setup(scenario, choice);
   PipelineScorer scorer(setup);
   DetailKeeper keeper(scorer, setup, run);

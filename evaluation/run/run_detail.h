@@ -20,6 +20,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,7 @@ struct RunDetail {
   std::uint64_t seed = 0;
   StreamKind stream = StreamKind::kDepth;  // the scored one
   scenarios::SyncMode sync_mode = scenarios::SyncMode::kGenlock;
+  std::shared_ptr<const CodedPulses> pulses_code{};  // null: the trigger has no code
   double frame_rate_hz = 0;
   std::size_t camera_count = 0;  // of the rig; `cameras` has the first of them
   std::size_t host_count = 0;

@@ -46,6 +46,7 @@ class FrameBlock {
     kept.exposure_us = sample.exposure_us;
     GatherFrame& frame = frames_[size_++];
     frame.source = camera;
+    frame.exposure_us = sample.exposure_us;
     frame.arrival = delivered;
     frame.sensor = sample.sensor;
     frame.tag = pulse;

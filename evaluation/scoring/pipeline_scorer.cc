@@ -1,5 +1,7 @@
 #include "evaluation/scoring/pipeline_scorer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -268,6 +270,12 @@ SeedScore PipelineScorer::Capture::finish() {
   score.ground_truth = ground_truth();
   if (score.ground_truth != GroundTruth::kNone) account_.add_to(score.sets);
   score.sets.discarded_frames = static_cast<std::int64_t>(gatherer_->discarded());
+  score.search = gatherer_->search();
+  if (score.search && score.search->found < score.search->sources) {
+    score.cost.notes.push_back(fmt::format("{} of {} cameras did not find their place in the code",
+                                           score.search->sources - score.search->found,
+                                           score.search->sources));
+  }
   score.host_error_ms = host_errors_.mean_absolute_ms();
   host_errors_.time_errors().add_to(score);
   score.host_errors_ms = host_errors_.signed_means_ms();

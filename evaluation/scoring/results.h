@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "algorithms/gathering/gathering.h"
 #include "evaluation/scoring/asymmetry_floor.h"
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/published_figures.h"
@@ -53,6 +54,7 @@ struct SeedScore : MetricValues<double> {
   std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
   // Real programs that ended; where there is one the seed has no values (program_failures.h).
   std::vector<ProgramFailure> program_failures{};
+  std::optional<PlaceSearch> search{};    // of a gatherer that looks for places in a code
   std::vector<SessionDelays> sessions{};  // the last pass of each slave that reported one, by host
   RecordingCost cost;
 };
@@ -87,6 +89,7 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   bool verified() const { return ground_truth != GroundTruth::kNone; }
   FrameCounts frames;  // these and the sets: over all seeds
   SetCounts sets;
+  std::optional<PlaceSearch> search{};  // of all seeds together
   std::optional<PublishedComparison> published;
   std::vector<std::string> notes;  // failures, a line each: "repetition 3: ..."
   std::vector<SeedScore> seeds;

@@ -130,6 +130,10 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
     row.emission_latency_max_ms =
         std::fmax(row.emission_latency_max_ms, seed.emission_latency_max_ms);
     row.unsynchronised_hosts += static_cast<std::int64_t>(seed.failures.size());
+    if (seed.search) {
+      if (!row.search) row.search.emplace();
+      row.search->add(*seed.search);
+    }
     for (const ProgramFailure& failure : seed.program_failures) {
       row.program_failures.push_back({.seed = seed.seed, .failure = failure});
     }

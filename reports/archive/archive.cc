@@ -217,6 +217,19 @@ Row read_stages(const JsonNode& node) {
   return row;
 }
 
+PlaceSearch read_search(const JsonNode& node) {
+  const auto whole = [&node](const char* member) {
+    return static_cast<std::uint32_t>(node[member].count());
+  };
+  return {.sources = whole("sources"),
+          .found = whole("found"),
+          .again = whole("again"),
+          .frames = whole("frames"),
+          .seconds = node["seconds"].number(),
+          .since_first_frame_s = node["since_first_frame_s"].number(),
+          .error_probability = node["error_probability"].number()};
+}
+
 Row read_row(const JsonNode& node, std::size_t seeds) {
   Row row = read_stages(node);
   row.offline = node["offline"].flag();
@@ -225,6 +238,7 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
   }
   row.published = published(node["published"]);
   read_ground_truth(node, row);
+  if (node.has("search")) row.search = read_search(node["search"]);
   read_programs(node, row);
   return row;
 }

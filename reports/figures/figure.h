@@ -127,6 +127,9 @@ struct Figure {
 // once. A few exist for each pipeline (Figure::pipeline) besides their scope.
 enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun, kRecording };
 
+// The figure that a run has only if its trigger has a code.
+inline constexpr const char* kCodeFigure = "coded_trigger";
+
 // A number of the paper that is of one frame rate.
 struct PaperRate {
   std::string alias;  // "fig9"

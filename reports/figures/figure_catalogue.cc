@@ -17,6 +17,7 @@ constexpr const char* kPaperRig = "18cam_6host_45fps";
 constexpr const char* kOneHost = "3cam_1host_30fps";
 constexpr const char* kTwoHosts = "6cam_2host_30fps";
 constexpr const char* kTwoStreams = "18cam_6host_90fps_full_slave";
+constexpr const char* kCodedRig = "18cam_6host_90fps_coded";
 constexpr const char* kMethod = "yoon2021_both";
 
 constexpr double kSameRate = 0.01;  // a trigger's rate is off by less than this share
@@ -29,6 +30,7 @@ std::vector<FigureEntry> entries_of_a_run() {
       {"host_clocks", "Clock errors of the hosts over time", "", {}, kRun, kPaperRig},
       {"gathering", "Gathered, dropped and wrongly gathered frames", "", {}, kRun, kPaperRig},
       {"pulse", "One pulse, camera by camera", "", {}, kRun, kPaperRig, kMethod},
+      {kCodeFigure, "A coded trigger in the cameras' stamps", "", {}, kRun, kCodedRig, "coded"},
       {"stamp_intervals",
        "Intervals of the four stamps",
        "Fig. 2",

@@ -15,6 +15,7 @@
 
 #include "recording/counted.h"
 #include "reports/figures/caption_facts.h"
+#include "reports/figures/code_figure.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/figures/host_clock_figure.h"
 #include "reports/figures/pulse_figure.h"
@@ -508,9 +509,11 @@ Figure first_seconds(const RunDetail& run) {
 }
 
 std::vector<Figure> run_figures(const RunDetail& run) {
-  return {stamp_intervals(run), stamps(run),        global_stamps(run),
-          hosts(run),           first_seconds(run), exposures(run),
-          host_clocks(run),     gathering(run),     pulse(run)};
+  std::vector<Figure> figures = {stamp_intervals(run), stamps(run),        global_stamps(run),
+                                 hosts(run),           first_seconds(run), exposures(run),
+                                 host_clocks(run),     gathering(run),     pulse(run)};
+  if (run.pulses_code) figures.push_back(coded_trigger(run));
+  return figures;
 }
 
 }  // namespace simbench::reports

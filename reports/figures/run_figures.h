@@ -31,7 +31,8 @@ Figure exposures(const evaluation::RunDetail& run);
 // Which frames were gathered, dropped, gathered wrongly or left over.
 Figure gathering(const evaluation::RunDetail& run);
 
-// All of these, in this order, with host_clock_figure.h before the last and pulse_figure.h behind.
+// All of these, in this order, with host_clock_figure.h before the last, pulse_figure.h behind and,
+// where the trigger has a code, code_figure.h.
 std::vector<Figure> run_figures(const evaluation::RunDetail& run);
 
 }  // namespace simbench::reports

@@ -45,6 +45,16 @@ Json metric_json(const evaluation::Metric& metric, const evaluation::Row& row) {
   return metric.is_known(row) ? Json(metric.count(row)) : Json();
 }
 
+Json search_json(const PlaceSearch& search) {
+  return {{"sources", search.sources},
+          {"found", search.found},
+          {"again", search.again},
+          {"frames", search.frames},
+          {"seconds", search.seconds},
+          {"since_first_frame_s", search.since_first_frame_s},
+          {"error_probability", search.error_probability}};
+}
+
 Json row_json(const evaluation::Row& row, evaluation::RankedBy ranked_by) {
   Json all = {{"pipeline", row.pipeline}};
   for (const StageInfo& stage : kPipelineStages) {
@@ -64,6 +74,7 @@ Json row_json(const evaluation::Row& row, evaluation::RankedBy ranked_by) {
   all["ground_truth"] = ground_truth_name(row.ground_truth);
   all["verified"] = row.verified();
   all["notes"] = row.notes;
+  if (row.search) all["search"] = search_json(*row.search);
   const evaluation::ReasonedStanding standing = evaluation::standing_of(row, ranked_by);
   all["standing"] = evaluation::standing_id(standing.is);
   all["failed"] = standing.reason.empty() ? Json() : Json(standing.reason);

@@ -326,6 +326,33 @@ std::optional<Block> alignment_block(const Results& results) {
                .table = table_of_metrics(results, &TablePlaces::alignment)};
 }
 
+std::optional<Block> search_block(const Results& results) {
+  const RowFields fields = {
+      pipeline_field<Row>(),
+      {{"found"},
+       [](const Row& row) {
+         return fmt::format("{} of {}", row.search->found, row.search->sources);
+       }},
+      {{"again"}, [](const Row& row) { return count_text(row.search->again); }},
+      {{"frames\nat most"}, [](const Row& row) { return count_text(row.search->frames); }},
+      {{"time\nat most s"}, [](const Row& row) { return number_text(row.search->seconds); }},
+      {{"since first frame\nat most s"},
+       [](const Row& row) { return number_text(row.search->since_first_frame_s); }},
+      {{"wrong place\nat most"},
+       [](const Row& row) { return number_text(row.search->error_probability); }}};
+  std::vector<const Row*> rows;
+  for (const Row& row : results.rows) {
+    if (row.search) rows.push_back(&row);
+  }
+  if (rows.empty()) return std::nullopt;
+  return Block{.heading = "Places in the trigger's code, over all seeds",
+               .table = table_of(fields, rows),
+               .prose = {"found: cameras that found their place; again: searches beyond the first; "
+                         "frames and time of a search, the largest of any camera and seed; wrong "
+                         "place: the probability that the search itself states "
+                         "(docs/coded_trigger.md section 4)."}};
+}
+
 std::vector<std::string> alignment_legend() {
   std::vector<std::string> lines;
   append_legends(&TablePlaces::alignment, lines);
@@ -385,6 +412,7 @@ Document results_document(const Results& results, const std::string& summary) {
     blocks.push_back({.heading = "Gathered sets, over all seeds",
                       .table = sets_table(pointers_to(results.rows))});
   }
+  add(search_block(results), blocks);
   add(failures_block(results), blocks);
   add(notes_block(results), blocks);
   blocks.push_back({.heading = "How to read it", .items = results_legend(results)});

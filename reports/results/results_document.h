@@ -91,6 +91,10 @@ std::optional<Block> failures_block(const evaluation::Results& results);
 std::optional<Block> notes_block(const evaluation::Results& results,
                                  std::size_t most = std::numeric_limits<std::size_t>::max());
 
+// How the cameras found their places in the trigger's code; nothing where no gathering looks for
+// them.
+std::optional<Block> search_block(const evaluation::Results& results);
+
 // The floor of two-way methods with unequal links; empty if links are equal.
 std::string asymmetry_line(const evaluation::Results& results);
 

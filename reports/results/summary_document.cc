@@ -143,6 +143,7 @@ std::vector<std::string> summary_legend(const Results& results) {
 
 void add_failures(const Results& results, Document& document) {
   add(failures_block(results), document.blocks);
+  add(search_block(results), document.blocks);
   add(notes_block(results, kMostNotes), document.blocks);
 }
 

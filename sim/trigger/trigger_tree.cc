@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/trigger_code.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
@@ -22,6 +23,9 @@ TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras
     delays_.push_back(from_us(own_us + branch_stream.uniform(0, settings.branch_delay_max_us) +
                               cable_stream.uniform(0, settings.cable_delay_max_us) +
                               cameras_before * settings.daisy_chain_delay_us));
+  }
+  if (const auto code = scenarios::trigger_code(settings)) {
+    code_ = std::make_shared<const TriggerCode>(*code);
   }
   start(TrueTime{});
 }
@@ -45,7 +49,10 @@ std::optional<TrueTime> TriggerTree::pulse(std::int64_t slot) const {
   }
   RandomStream stream(seed_, "trigger/pulse", static_cast<std::uint64_t>(slot));
   if (stream.chance(settings_.missed_pulse_probability)) return std::nullopt;
-  return at + from_us(stream.normal(settings_.pulse_jitter_sigma_us));
+  const Nanoseconds jitter = from_us(stream.normal(settings_.pulse_jitter_sigma_us));
+  if (!code_) return at + jitter;
+  if (!code_->is_sent(slot)) return std::nullopt;
+  return at + code_->shift(slot) + jitter;
 }
 
 std::int64_t TriggerTree::first_slot_from(TrueTime at) const {

@@ -11,6 +11,10 @@
 // on to the next one after daisy_chain_delay_us (Azure Kinect; one sub-trigger for all cameras then
 // stands for the master, whose oscillator the trigger's rate is).
 //
+// A coded trigger (laws/trigger_code.h) moves the pulse of a slot by its shift, and leaves some
+// out: due() is the even grid, without it, so that slots have the same numbers with and without a
+// code.
+//
 // All randomness is drawn per slot or per branch from streams of its own, so pulses are the same
 // for every pipeline of a seed.
 //
@@ -22,9 +26,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "laws/trigger_code.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
 
@@ -37,9 +43,10 @@ class TriggerTree {
   // Sets the start of the cameras, true zero before this call; slot 0 is due start_delay_ms later.
   void start(TrueTime capture_start);
 
-  // When slot `slot` is due, without jitter. Slots are equally spaced to the nanosecond over hours.
+  // When slot `slot` is due, without jitter and shift. Slots are equally spaced to the nanosecond
+  // over hours.
   TrueTime due(std::int64_t slot) const;
-  // When the main trigger's pulse for `slot` leaves; nothing if it is missed or paused.
+  // When the main trigger's pulse for `slot` leaves; nothing if it is missed, paused or left out.
   std::optional<TrueTime> pulse(std::int64_t slot) const;
   // Propagation from the main trigger to camera `camera`, through its branch, the cameras before
   // it in a daisy chain, and its cable.
@@ -56,6 +63,7 @@ class TriggerTree {
   TrueTime capture_start_;
   TrueTime first_due_;
   std::vector<Nanoseconds> delays_;
+  std::shared_ptr<const TriggerCode> code_;  // null: none
 };
 
 }  // namespace simbench::sim

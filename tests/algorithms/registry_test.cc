@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/algorithms/coded_trigger/coded_frames.h"
 #include "tests/nonempty.h"
 
 namespace simbench {
@@ -36,14 +37,14 @@ DeviceTimeEntry constant(const std::string& name) {
 
 TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
   std::vector<std::string> device_time = entry_names(algorithms<DeviceTimeEntry>());
-  device_time.resize(22);  // other tests may have registered more
-  EXPECT_THAT(
-      device_time,
-      ElementsAre("regression_30", "regression_offline", "eq1_printed", "eq1_interval_previous",
-                  "eq1_interval_current", "raw_arrival", "sensor_normalised", "oracle",
-                  "regression_300", "regression_all", "hull_300", "hull_switch_10s",
-                  "hull_switch_60s", "hull_offline", "two_way_poll", "olson_50ppm", "minimum_1s",
-                  "theil_sen_300", "kalman", "librealsense_global", "host_stamps", "rocsync_led"));
+  device_time.resize(23);  // other tests may have registered more
+  EXPECT_THAT(device_time,
+              ElementsAre("regression_30", "regression_offline", "eq1_printed",
+                          "eq1_interval_previous", "eq1_interval_current", "raw_arrival",
+                          "sensor_normalised", "oracle", "regression_300", "regression_all",
+                          "hull_300", "hull_switch_10s", "hull_switch_60s", "hull_offline",
+                          "two_way_poll", "olson_50ppm", "minimum_1s", "theil_sen_300", "kalman",
+                          "librealsense_global", "host_stamps", "rocsync_led", "coded"));
   std::vector<std::string> alignments = entry_names(algorithms<CaptureAlignmentEntry>());
   alignments.resize(8);  // likewise
   EXPECT_THAT(alignments,
@@ -52,7 +53,7 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
   EXPECT_THAT(entry_names(algorithms<GatheringEntry>()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",
-                          "phase_binning", "oracle"));
+                          "phase_binning", "coded_trigger", "oracle"));
 }
 
 TEST(Registry, MakesEveryBuiltInAlgorithm) {
@@ -66,14 +67,18 @@ TEST(Registry, MakesEveryBuiltInAlgorithm) {
     const bool is_rocsync = entry.info.name == "rocsync_led";
     EXPECT_EQ(estimator->offline(), is_rocsync || entry.info.name.ends_with("_offline"))
         << entry.info.name;
-    EXPECT_EQ(estimator->relative(), is_rocsync || entry.info.name == "sensor_normalised")
-        << entry.info.name;
+    const bool is_relative = is_rocsync || entry.info.name == "sensor_normalised";
+    EXPECT_EQ(estimator->relative(), is_relative || entry.info.name == "coded") << entry.info.name;
   }
-  const GatheringSetup setup = {.sources = 2, .period = from_ms(20), .interval = from_ms(10)};
+  const GatheringSetup setup = {.sources = 2,
+                                .period = from_ms(20),
+                                .interval = from_ms(10),
+                                .pulses = pulses_of(short_code())};
   for (const GatheringEntry& entry : nonempty(algorithms<GatheringEntry>())) {
     const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
     EXPECT_EQ(gatherer->discarded(), 0U);
-    EXPECT_EQ(gatherer->from_first_frame(), entry.info.family == "genlock") << entry.info.name;
+    const bool counts = entry.info.family == "genlock" || entry.info.name == "coded_trigger";
+    EXPECT_EQ(gatherer->from_first_frame(), counts) << entry.info.name;
   }
 }
 

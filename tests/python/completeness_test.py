@@ -15,6 +15,7 @@ NOT_IN_PYTHON = {
     "node": "a program of its own on each host of a rig",
     "relay": "a program of its own between nodes",
     "keygen": "writes a secret for hosts",
+    "code": "describes a trigger for a microcontroller; its JSON is all of it",
     "validate-model": "starts hosts as processes in namespaces of the network",
     "reconstruct": "needs Embree and Open3D, which the module has not",
     "help": "help() of Python",

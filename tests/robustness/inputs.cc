@@ -238,6 +238,7 @@ void Inputs::add_arguments() {
         {"describe", "18cam_6host_45fps_lan", "--set", "/algorithms/ntp/min_poll=4"},
         {"describe", "3cam_1host_30fps", "/cameras", "--set", "/cameras/streams/0/width=640"},
         {"describe", "two_way_hull", "--format", "json"},
+        {"code", "18cam_6host_90fps_coded", "--set", "/trigger/code/order=6"},
         {"describe", "3cam_1host_30fps", "--set", "/faults=[{\"kind\": \"clock_step\"}]"},
         {"run", "--scenario", "3cam_1host_30fps", "--seeds", "1", "--jobs", "1", "--set",
          "/timeline/frames=10", "--format", "csv", "--pipelines", "genlock,oracle"},

@@ -8,6 +8,7 @@
 
 #include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
+#include "tests/algorithms/coded_trigger/coded_frames.h"
 
 namespace simbench {
 
@@ -26,7 +27,9 @@ inline std::vector<std::string> registered_estimators() {
 inline std::unique_ptr<DeviceTimeEstimator> make_registered(const std::string& full_name) {
   const DeviceTimeName name = parse_device_time_name(full_name);
   const DeviceTimeEntry* entry = find_algorithm<DeviceTimeEntry>(name.base);
-  return make_variant(name, entry->make(check_parameters(entry->info.parameters, {})), {});
+  auto made = make_variant(name, entry->make(check_parameters(entry->info.parameters, {})), {});
+  made->on_coded_pulses(pulses_of(short_code()));
+  return made;
 }
 
 }  // namespace simbench

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "algorithms/registry.h"
+#include "tests/algorithms/coded_trigger/coded_frames.h"
 #include "tests/nonempty.h"
 #include "tests/sim/engine/counting_new.cc"  // NOLINT(bugprone-suspicious-include): its counter
 
@@ -37,8 +38,11 @@ void push_lossy_pulses(Gatherer& gatherer, std::int64_t first, std::int64_t coun
 }
 
 TEST(GatheringAllocations, NoneOnceWarm) {
-  const GatheringSetup setup = {
-      .sources = 6, .period = from_ms(20), .interval = from_ms(10), .queue_limit = 16};
+  const GatheringSetup setup = {.sources = 6,
+                                .period = from_ms(20),
+                                .interval = from_ms(10),
+                                .queue_limit = 16,
+                                .pulses = pulses_of(short_code())};
   for (const GatheringEntry& entry : nonempty(algorithms<GatheringEntry>())) {
     const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
     push_lossy_pulses(*gatherer, 0, 900);

@@ -5,6 +5,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "algorithms/registry.h"
+#include "tests/algorithms/coded_trigger/coded_frames.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/nonempty.h"
 
@@ -22,7 +24,8 @@ namespace {
 
 class EveryGatherer : public testing::TestWithParam<std::string> {
  protected:
-  static std::unique_ptr<Gatherer> make(const GatheringSetup& setup) {
+  static std::unique_ptr<Gatherer> make(GatheringSetup setup) {
+    setup.pulses = pulses_of(short_code());
     const GatheringEntry& entry = *find_algorithm<GatheringEntry>(GetParam());
     return entry.make(check_parameters(entry.info.parameters, {}), setup);
   }
@@ -34,12 +37,20 @@ std::vector<std::string> gatherer_names() {
   return all;
 }
 
-// Pushes frames of a world without noise, source after source.
+// A frame of a world without noise, whose trigger is coded: its sensor stamp tells so.
+GatherFrame pulse_frame(std::uint32_t source, std::int64_t pulse) {
+  static const TriggerCode code = short_code();
+  GatherFrame frame = frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse);
+  frame.sensor += std::chrono::duration_cast<Microseconds>(code.shift(pulse));
+  return frame;
+}
+
+// Pushes them, source after source.
 void push_pulses(Gatherer& gatherer, std::uint32_t sources, std::int64_t first, std::int64_t count,
                  CollectedSets& out) {
   for (std::int64_t pulse = first; pulse < first + count; ++pulse) {
     for (std::uint32_t source = 0; source < sources; ++source) {
-      gatherer.push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
+      gatherer.push(pulse_frame(source, pulse), out);
     }
   }
 }
@@ -101,8 +112,8 @@ std::vector<GatherFrame> noisy_frames(std::uint32_t sources, std::int64_t pulses
       last_ms = std::max(last_ms, at_ms + 8 + 20 * uniform(random));
       if (uniform(random) < drop) continue;
       arrivals.push_back({last_ms, frame_at(source, stamp_ms, pulse)});
-      // Genlock counts from here: half-period noise is not what it is for.
-      arrivals.back().frame.sensor = DeviceTime(Microseconds(pulse * 20'000));
+      // Genlock and a coded trigger count from here: half-period noise is not what they are for.
+      arrivals.back().frame.sensor = pulse_frame(source, pulse + 1).sensor;
     }
   }
   std::ranges::stable_sort(arrivals, {}, &Arrival::at_ms);
@@ -193,7 +204,7 @@ TEST_P(EveryGatherer, ASilentSourceCostsItsSetsButNoMemory) {
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < 200; ++pulse) {
     for (std::uint32_t source = 0; source < 2; ++source) {
-      gatherer->push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
+      gatherer->push(pulse_frame(source, pulse), out);
     }
   }
   EXPECT_TRUE(out.sets.empty());
@@ -208,7 +219,7 @@ TEST_P(EveryGatherer, GoesOnAfterASourceWasSilent) {
   push_pulses(*gatherer, 3, 0, 30, out);
   for (std::int64_t pulse = 30; pulse < 130; ++pulse) {
     for (std::uint32_t source = 0; source < 2; ++source) {
-      gatherer->push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
+      gatherer->push(pulse_frame(source, pulse), out);
     }
   }
   const std::int64_t before = out.pure();
@@ -241,11 +252,11 @@ TEST_P(EveryGatherer, AFrameOfTheFarFutureIsSurvived) {
   CollectedSets out;
   push_pulses(*gatherer, 3, 0, 30, out);
   // Its sensor stamp and pulse are right: a step of one host's clock does not touch these.
-  GatherFrame wild = frame_at(1, 30 * kShortPeriodMs, 30);
+  GatherFrame wild = pulse_frame(1, 30);
   wild.stamp += std::chrono::hours(3);
-  gatherer->push(frame_at(0, 30 * kShortPeriodMs, 30), out);
+  gatherer->push(pulse_frame(0, 30), out);
   gatherer->push(wild, out);
-  gatherer->push(frame_at(2, 30 * kShortPeriodMs, 30), out);
+  gatherer->push(pulse_frame(2, 30), out);
   push_pulses(*gatherer, 3, 31, 100, out);
   // Until its own queue overflows it may be waited for.
   EXPECT_GE(out.pure(), 30 + 100 - 20);

@@ -50,6 +50,7 @@ const std::vector<Words>& writing_commands() {
       {"diagnose", "in.csv", "--pack"},
       {"export", "in.csv", "--output"},
       {"fit", "in.csv", "--output"},
+      {"code", "18cam_6host_90fps_coded", "--export"},
       {"keygen", "FILE"},
       {"node", "--rig", "rig.json", "--name", "a", "--journal"},
       {"node", "--rig", "rig.json", "--name", "a", "--programs-on", "lo", "--program-log"},

@@ -121,6 +121,7 @@ TEST(PipelineChoiceTest, RefusesAlgorithmsThatNeedWhatTheWorldHasNot) {
                             Case{"host_sync", "trigger_wired", "/hosts/pulse_lines/trigger"},
                             Case{"device_time", "host_stamps", "/cameras/stamp_clock"},
                             Case{"device_time", "rocsync_led", "/cameras/led_clock"},
+                            Case{"device_time", "coded", "/trigger/code"},
                             Case{"device_time", "two_way_poll", "/cameras/clock_poll/interval_ms"},
                             Case{"device_time", "librealsense_global_steady", "clock_poll"}}) {
     Scenario scenario = test_scenario();

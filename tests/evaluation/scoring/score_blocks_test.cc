@@ -12,6 +12,7 @@
 #include "algorithms/registry.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/event.h"
+#include "tests/algorithms/coded_trigger/coded_frames.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -163,14 +164,17 @@ ScorerSetup block_setup(const std::string& device_time, const std::string& gathe
   if (estimator.make) {
     setup.make_estimator = [name, &estimator](std::size_t) {
       const Parameters parameters = check_parameters(estimator.info.parameters, {});
-      return make_variant(name, estimator.make(parameters), {});
+      auto made = make_variant(name, estimator.make(parameters), {});
+      made->on_coded_pulses(pulses_of(short_code()));
+      return made;
     };
   }
   setup.make_second_estimator = [](std::size_t) {
     return find_algorithm<DeviceTimeEntry>("regression_offline")->make({});
   };
   const GatheringEntry& gatherer = *find_algorithm<GatheringEntry>(gathering);
-  setup.make_gatherer = [&gatherer](const GatheringSetup& gathering_setup) {
+  setup.make_gatherer = [&gatherer](GatheringSetup gathering_setup) {
+    gathering_setup.pulses = pulses_of(short_code());
     return gatherer.make(check_parameters(gatherer.info.parameters, {}), gathering_setup);
   };
   return setup;

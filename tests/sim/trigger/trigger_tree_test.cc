@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "scenarios/trigger_code.h"
 #include "tests/sim/rig/ideal_scenario.h"
 
 namespace simbench::sim {
@@ -97,6 +98,44 @@ TEST(TriggerTree, JitterIsThatOfTheSettings) {
   }
   EXPECT_NEAR(sum / slots, 0.0, 5 * 3 / std::sqrt(slots)) << "seed 3";
   EXPECT_NEAR(std::sqrt(squares / slots), 3.0, 5 * 3 / std::sqrt(2.0 * slots)) << "seed 3";
+}
+
+TEST(TriggerTree, ACodeMovesThePulsesAndNotTheGrid) {
+  scenarios::Trigger settings = ideal(45);
+  const TriggerTree even(settings, 6, 3);
+  settings.code = scenarios::TriggerCodeModel{
+      .kind = scenarios::CodeKind::kPosition, .order = 6, .shift_us = 30, .pulses_per_symbol = 1};
+  const TriggerTree coded(settings, 6, 3);
+  const TriggerCode code = *scenarios::trigger_code(settings);
+  for (std::int64_t slot = 0; slot < 200; ++slot) {
+    EXPECT_EQ(coded.due(slot), even.due(slot));
+    EXPECT_EQ(*coded.pulse(slot), *even.pulse(slot) + code.shift(slot)) << slot;
+  }
+  EXPECT_EQ(coded.first_slot_from(even.due(77)), 77);
+}
+
+TEST(TriggerTree, ACodeLeavesPulsesOut) {
+  scenarios::Trigger settings = ideal(45);
+  settings.code = scenarios::TriggerCodeModel{
+      .kind = scenarios::CodeKind::kMissing, .order = 4, .shift_us = 0, .pulses_per_symbol = 3};
+  const TriggerTree tree(settings, 6, 3);
+  const TriggerCode code = *scenarios::trigger_code(settings);
+  for (std::int64_t slot = 0; slot < 100; ++slot) {
+    EXPECT_EQ(tree.pulse(slot).has_value(), code.is_sent(slot)) << slot;
+  }
+}
+
+TEST(TriggerTree, JitterIsTheSameWithACode) {
+  scenarios::Trigger settings = ideal(45);
+  settings.pulse_jitter_sigma_us = 5;
+  const TriggerTree even(settings, 6, 3);
+  settings.code = scenarios::TriggerCodeModel{
+      .kind = scenarios::CodeKind::kPosition, .order = 6, .shift_us = 30, .pulses_per_symbol = 1};
+  const TriggerTree coded(settings, 6, 3);
+  const TriggerCode code = *scenarios::trigger_code(settings);
+  for (std::int64_t slot = 0; slot < 100; ++slot) {
+    EXPECT_EQ(*coded.pulse(slot) - code.shift(slot), *even.pulse(slot)) << slot;
+  }
 }
 
 TEST(TriggerTree, CamerasOfOneBranchShareItsDelay) {
