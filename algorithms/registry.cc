@@ -46,6 +46,7 @@
   FILE(GatheringEntry, gathering_k4a)                             \
   FILE(GatheringEntry, gathering_phase_binning)                   \
   FILE(GatheringEntry, gathering_coded_trigger)                   \
+  FILE(GatheringEntry, gathering_certified)                       \
   FILE(GatheringEntry, gathering_oracle)
 
 namespace simbench {

@@ -6,7 +6,7 @@
 // logs are not in it. The stamps are as they were, with the time of the recording where they count
 // from 1970. `simbench diagnose` says the same of it, under the new names.
 //
-//   const Pack packed = pack_streams(recorded_streams({"front.bag", "back.bag"}), logs, "for_you");
+//   const Pack packed = pack_streams(recorded_streams({"front.bag"}), {}, "for_you");
 //   for (const std::string& note : packed.notes) print(note);   // "camera0 is front"
 //
 // A recording folder becomes one of the same captures (recording/recording_folder.h).

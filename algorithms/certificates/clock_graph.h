@@ -16,13 +16,13 @@
 // between live points only: the newest of each clock, and those that the caller keeps because a
 // fact about them is still to come (a message under way, a frame whose set is open).
 //
-//   ClockGraph graph({RateBound(50), RateBound(50)});         // a host, a camera
-//   const auto asked = graph.advance(0, from_ms(10));         // the host counts 10 ms
+//   ClockGraph graph({RateBound(50), RateBound(50)});   // a host, a camera
+//   const auto asked = graph.advance(0, from_ms(10));   // the host counts 10 ms
 //   graph.keep(asked);
-//   const auto read = graph.advance(1, from_ms(700));         // the camera read 700 ms
-//   graph.bound(read, asked, Picoseconds(0));                 // it was asked before: no
-//   contradiction graph.release(asked); Picoseconds later_by = graph.most(asked, read); //
-//   kUnbounded: no answer came yet
+//   const auto seen = graph.advance(1, from_ms(700));   // the camera reads 700 ms
+//   graph.bound(seen, asked, Picoseconds(0));           // it was asked before
+//   graph.release(asked);
+//   Picoseconds later = graph.most(asked, seen);        // kUnbounded: no answer came yet
 //
 // Points of a clock come in order: upwards, or, where a recording is read from its end, downwards.
 // A contradiction, a chain of facts that ends before it began, is detected by the fact that closes

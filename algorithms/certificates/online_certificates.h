@@ -6,9 +6,10 @@
 // with its distance in between bounded by the clock's rate: sure, and wider by that drift (0.1 us
 // for 1 ms).
 //
-//   OnlineCertificates rig({.hosts = 6, .host_of_camera = hosts});
-//   const auto first = rig.on_frame(0, sensor), second = rig.on_frame(7, other_sensor);
-//   if (rig.apart(std::array{first, second}) < half_a_period) emit();
+//   OnlineCertificates rig({.hosts = 2, .host_of_camera = {0, 1}});
+//   rig.on_poll(0, {});
+//   const std::array frames = {rig.on_frame(0, DeviceTime()), rig.on_frame(1, DeviceTime())};
+//   const bool is_sure = rig.apart(frames) < Picoseconds(from_ms(11));
 //
 // After a contradiction (is_contradicted()) nothing is sure any more: apart() is unbounded.
 //
@@ -17,6 +18,7 @@
 // state. Source: clock_graph.h; Ostrovsky and Patt-Shamir, PODC 1999.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -6,8 +6,9 @@
 // first to the last steady instant at which the clock read something within [from, to].
 //
 //   SteadyReadings readings;
-//   readings.add(adjustment);                     // in order
-//   if (auto when = readings.when(stamp - error, stamp + error)) use(when->first, when->last);
+//   readings.add(adjustment);   // in order
+//   const auto when = readings.when(HostTime(from_ms(10)), HostTime(from_ms(11)));
+//   if (when) use(when->first, when->last);
 //
 // Only what was added before counts, and the newest line goes on. Within 2 ns. Complexity: O(lines
 // that lie above `to`, or that the clock came back to); amortised O(1) for new stamps.

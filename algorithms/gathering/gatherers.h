@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "algorithms/certificates/online_certificates.h"
 #include "algorithms/coded_trigger/code_search.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/gathering/genlock_order.h"
@@ -195,6 +196,23 @@ std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setu
 // Source: docs/coded_trigger.md.
 std::unique_ptr<Gatherer> make_coded_trigger_gatherer(const GatheringSetup& setup,
                                                       const CodeDecoderSettings& settings);
+
+// Gathering with a guarantee: the sets of Algorithm 3 that are surely of frames within half a
+// period.
+//
+// Each set of make_yoon2021_gatherer() is emitted if no two of its frames can have been exposed
+// half of GatheringSetup::period apart or more, whatever the delays were, by what the polls and
+// exchanges until then prove (algorithms/certificates/online_certificates.h); the frames of others
+// are discarded.
+//
+// What to expect: no set mixes pulses if the rates and stamps are within what `rig` says, at the
+// cost of all sets for which nobody can know; without polls, or without exchanges between hosts,
+// none. Once the evidence contradicts `rig`, no set is emitted any more.
+//
+// Complexity: that of OnlineCertificates; a set O(n^2). Memory: 128 frames a source. Source:
+// docs/certificates.md.
+std::unique_ptr<Gatherer> make_certified_gatherer(const GatheringSetup& setup,
+                                                  const CertifiedRig& rig);
 
 // Gathering by the truth: a set is the frames that one trigger pulse exposed.
 //

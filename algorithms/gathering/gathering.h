@@ -17,7 +17,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "algorithms/device_time/device_time.h"
+#include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench {
@@ -58,6 +61,10 @@ struct GatheringSetup {
   Nanoseconds interval{};  // T_int, largest range of a set
   // Frames that may wait per source, at least 1; empty: the policy's own.
   std::optional<std::uint32_t> queue_limit{};
+  // How many hosts there are, and that of each source (empty: one host has all); for gatherers that
+  // want evidence.
+  std::uint32_t hosts = 0;
+  std::vector<std::uint32_t> host_of_source{};
   // What the trigger's pulses are, if they are coded; else null.
   std::shared_ptr<const CodedPulses> pulses{};
 };
@@ -99,6 +106,13 @@ class Gatherer {
   // True for a gatherer that counts from a camera's first frame: it gets the warm-up too, in which
   // `stamp` is the bare arrival unless the estimator runs there as well.
   virtual bool from_first_frame() const { return false; }
+  // True for a gatherer that gets what ties the clocks, in order with the frames and from the begin
+  // of the capture on: polls of the sources' clocks, exchanges and changes of the hosts'. One that
+  // follows an offline estimator gets all of it before the first frame.
+  virtual bool wants_evidence() const { return false; }
+  virtual void on_poll(std::uint32_t /*source*/, const PollSample& /*poll*/) {}
+  virtual void on_exchange(PeerId /*host*/, const Exchange& /*exchange*/) {}
+  virtual void on_adjustment(const ClockAdjustment& /*adjustment*/) {}
   // How it found its sources' places in the trigger's code, so far; nothing if it looks for none.
   virtual std::optional<PlaceSearch> search() const { return std::nullopt; }
 };

@@ -48,7 +48,7 @@ class SetCollector final : public ScoreObserver {
 
 // The sets' frames in the evidence. A frame belongs to one set; of frames of one camera with one
 // stamp, as after a reset of its clock, the first that belongs to none is meant.
-std::vector<EvidenceSet> frames_of(const SetCollector& collected, const Evidence& evidence) {
+std::vector<EvidenceSet> frames_of(const SetCollector& collected, const CaptureEvidence& evidence) {
   std::multimap<SetCollector::Member, std::size_t> free;
   for (std::size_t i = 0; i < evidence.frames().size(); ++i) {
     const FrameEvidence& frame = evidence.frames()[i];
@@ -70,7 +70,7 @@ std::vector<EvidenceSet> frames_of(const SetCollector& collected, const Evidence
 // When the clocks were read: of each camera by polls, of each host by messages.
 class Readings {
  public:
-  explicit Readings(const Evidence& evidence)
+  explicit Readings(const CaptureEvidence& evidence)
       : layout_(evidence.layout()), of_camera_(layout_.cameras.size()), of_host_(layout_.hosts) {
     for (const ClockPollEvidence& poll : evidence.polls()) {
       of_camera_[poll.camera].push_back(nanoseconds_of(poll.device));
@@ -140,7 +140,7 @@ std::string fact_text(const FactOrder& order, const ClockFact& fact) {
   return {};
 }
 
-ContradictedCapture contradicted(std::uint64_t seed, const Evidence& evidence,
+ContradictedCapture contradicted(std::uint64_t seed, const CaptureEvidence& evidence,
                                  const FactOrder& order, std::uint32_t closing) {
   const Contradiction proof = contradiction_of(order, closing);
   ContradictedCapture found{.seed = seed, .before_ms = to_ms(proof.before)};
@@ -170,7 +170,7 @@ struct CapturePart {
 };
 
 void add_sets(const CertifiedCapture& found, const std::vector<EvidenceSet>& sets,
-              const Evidence& evidence, CapturePart& part) {
+              const CaptureEvidence& evidence, CapturePart& part) {
   const Readings readings(evidence);
   part.impossible_sets = found.impossible_sets;
   for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -203,7 +203,7 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
   PipelineScorer scorer(setup);
   SetCollector collected;
   scorer.watch(collected);
-  Evidence evidence(options.assumptions, setup.stream);
+  CaptureEvidence evidence(options.assumptions, setup.stream);
   ForkedSink both({&scorer, &evidence});
   try {
     const SeedScore score = score_run(source, choice, seed, scorer, both);

@@ -25,7 +25,7 @@ struct Reach {
 
 class Certifier {
  public:
-  Certifier(const Evidence& evidence, const FactOrder& order, std::span<const EvidenceSet> sets,
+  Certifier(const CaptureEvidence& evidence, const FactOrder& order, std::span<const EvidenceSet> sets,
             Horizon horizon, const PairVisitor& visit)
       : evidence_(evidence),
         order_(order),
@@ -256,7 +256,7 @@ class Certifier {
           sum(joined[places[0]][places[1]], joined[places[1]][places[0]]));
   }
 
-  const Evidence& evidence_;
+  const CaptureEvidence& evidence_;
   const FactOrder& order_;
   std::span<const EvidenceSet> sets_;
   Horizon horizon_;
@@ -274,7 +274,7 @@ class Certifier {
 
 }  // namespace
 
-CertifiedCapture certify(const Evidence& evidence, const FactOrder& order,
+CertifiedCapture certify(const CaptureEvidence& evidence, const FactOrder& order,
                          std::span<const EvidenceSet> sets, Horizon horizon,
                          const PairVisitor& visit) {
   return Certifier(evidence, order, sets, horizon, visit).run();

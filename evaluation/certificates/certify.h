@@ -12,9 +12,11 @@
 // from both sides (frontier.h). With kCausal only what came before the cut does, as for a
 // program that certifies while it runs.
 //
-//   const CertifiedCapture found = certify(evidence, sets, Horizon::kWhole);
-//   if (found.contradiction) return explain(*found.contradiction);
-//   for (const SetCertificate& set : found.sets) use(to_ms(set.apart));
+//   void show(const CaptureEvidence& evidence, std::span<const EvidenceSet> sets) {
+//     const FactOrder order(evidence);
+//     const CertifiedCapture found = certify(evidence, order, sets, Horizon::kWhole);
+//     for (const SetCertificate& set : found.sets) use(to_ms(set.apart));
+//   }
 //
 // Complexity: O(points * clocks) and O(sets * clocks^3). Memory: the evidence, 40 bytes a point,
 // and 8 * clocks^2 bytes for some 2 * sqrt(sets) sets. Source: Patt-Shamir and Rajsbaum, STOC 1994.
@@ -29,14 +31,14 @@
 #include <vector>
 
 #include "algorithms/certificates/clock_graph.h"
-#include "evaluation/certificates/evidence.h"
+#include "evaluation/certificates/capture_evidence.h"
 #include "evaluation/certificates/fact_order.h"
 
 namespace simbench::evaluation {
 
 enum class Horizon : std::uint8_t { kWhole, kCausal };
 
-// The frames of a set, by their places in Evidence::frames().
+// The frames of a set, by their places in CaptureEvidence::frames().
 using EvidenceSet = std::vector<std::size_t>;
 
 // The ties that a difference of two frames hangs on: each camera's to its host, and the hosts'.
@@ -74,7 +76,7 @@ struct CertifiedCapture {
 // Called with each pair of each set, in order.
 using PairVisitor = std::function<void(std::size_t set, const PairInterval&)>;
 
-CertifiedCapture certify(const Evidence& evidence, const FactOrder& order,
+CertifiedCapture certify(const CaptureEvidence& evidence, const FactOrder& order,
                          std::span<const EvidenceSet> sets, Horizon horizon,
                          const PairVisitor& visit = {});
 

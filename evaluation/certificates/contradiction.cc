@@ -104,7 +104,7 @@ Contradiction contradiction_of(const FactOrder& order, std::uint32_t closing) {
   return found;
 }
 
-std::optional<double> possible_rate_ppm(const Evidence& evidence) {
+std::optional<double> possible_rate_ppm(const CaptureEvidence& evidence) {
   const Assumptions& assumed = evidence.assumptions();
   for (const double ppm : {100.0, 200.0, 500.0, 1000.0}) {
     if (ppm <= std::max(assumed.host_rate_ppm, assumed.camera_rate_ppm)) continue;

@@ -4,9 +4,10 @@
 // following it, an instant would lie before itself. At least one of the assumptions behind its
 // facts is wrong, or a stamp is. The chain found has no part that could be left out.
 //
-//   if (found.contradiction) {
+//   void show(const FactOrder& order, const CertifiedCapture& found) {
+//     if (!found.contradiction) return;
 //     const Contradiction proof = contradiction_of(order, *found.contradiction);
-//     for (const std::uint32_t fact : proof.facts) name(order.facts()[fact]);
+//     for (const std::uint32_t fact : proof.facts) use(order.facts()[fact].kind);
 //   }
 //
 // Complexity: O(points) a pass, and as many passes as the chain changes its direction, some ten.
@@ -17,7 +18,7 @@
 #include <vector>
 
 #include "algorithms/certificates/rate_bound.h"
-#include "evaluation/certificates/evidence.h"
+#include "evaluation/certificates/capture_evidence.h"
 #include "evaluation/certificates/fact_order.h"
 
 namespace simbench::evaluation {
@@ -32,6 +33,6 @@ Contradiction contradiction_of(const FactOrder& order, std::uint32_t closing);
 
 // Rates, in ppm, of all clocks, at which the evidence contradicts nothing: the least of 100, 200,
 // 500 and 1000 that is above the assumed ones. Nothing if none is: then no rate explains it.
-std::optional<double> possible_rate_ppm(const Evidence& evidence);
+std::optional<double> possible_rate_ppm(const CaptureEvidence& evidence);
 
 }  // namespace simbench::evaluation

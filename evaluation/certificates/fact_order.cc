@@ -17,7 +17,7 @@ Nanoseconds count_of(SteadyTime steady) { return steady.time_since_epoch(); }
 Picoseconds at_least(Nanoseconds delay) { return -Picoseconds(delay); }
 
 // Hosts that no message ties are taken to begin with their first frames at one time.
-void align_by_first_arrivals(const Evidence& evidence,
+void align_by_first_arrivals(const CaptureEvidence& evidence,
                              std::vector<std::optional<Nanoseconds>>& offset) {
   std::vector<std::optional<Nanoseconds>> first(evidence.layout().hosts);
   for (const FrameEvidence& frame : evidence.frames()) {
@@ -35,7 +35,7 @@ void align_by_first_arrivals(const Evidence& evidence,
 
 // By how much each clock is ahead of the first, roughly: what its first tie to a clock that is
 // known says.
-std::vector<Nanoseconds> rough_offsets(const Evidence& evidence, std::size_t hosts) {
+std::vector<Nanoseconds> rough_offsets(const CaptureEvidence& evidence, std::size_t hosts) {
   std::vector<std::optional<Nanoseconds>> offset(hosts + evidence.layout().cameras.size());
   offset[0] = Nanoseconds(0);
   for (std::size_t pass = 0; pass < hosts; ++pass) {
@@ -75,13 +75,13 @@ void sort_by_key(std::size_t count, std::size_t keys, const Key& key,
 
 }  // namespace
 
-std::vector<RateBound> equal_rates(const Evidence& evidence, double host_ppm, double camera_ppm) {
+std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_ppm, double camera_ppm) {
   std::vector<RateBound> rates(evidence.layout().hosts, RateBound(host_ppm));
   rates.resize(rates.size() + evidence.layout().cameras.size(), RateBound(camera_ppm));
   return rates;
 }
 
-std::vector<RateBound> assumed_rates(const Evidence& evidence) {
+std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence) {
   const Assumptions& assumed = evidence.assumptions();
   if (!assumed.observed_margin_ppm) {
     return equal_rates(evidence, assumed.host_rate_ppm, assumed.camera_rate_ppm);
@@ -96,9 +96,9 @@ std::vector<RateBound> assumed_rates(const Evidence& evidence) {
   return rates;
 }
 
-FactOrder::FactOrder(const Evidence& evidence) : FactOrder(evidence, assumed_rates(evidence)) {}
+FactOrder::FactOrder(const CaptureEvidence& evidence) : FactOrder(evidence, assumed_rates(evidence)) {}
 
-FactOrder::FactOrder(const Evidence& evidence, std::vector<RateBound> rates)
+FactOrder::FactOrder(const CaptureEvidence& evidence, std::vector<RateBound> rates)
     : hosts_(evidence.layout().hosts), rates_(std::move(rates)) {
   add_points(evidence);
   sort_points(evidence);
@@ -115,7 +115,7 @@ void FactOrder::fact(std::uint32_t from, std::uint32_t to, Picoseconds most, Fac
   facts_.push_back({from, to, most, kind, static_cast<std::uint32_t>(source)});
 }
 
-void FactOrder::add_points(const Evidence& evidence) {
+void FactOrder::add_points(const CaptureEvidence& evidence) {
   const Assumptions& assumed = evidence.assumptions();
   for (std::size_t i = 0; i < evidence.messages().size(); ++i) {
     const HostMessage& message = evidence.messages()[i];
@@ -150,7 +150,7 @@ void FactOrder::add_points(const Evidence& evidence) {
 }
 
 // Points by their clock's count less its rough offset; facts and frames follow them.
-void FactOrder::sort_points(const Evidence& evidence) {
+void FactOrder::sort_points(const CaptureEvidence& evidence) {
   const std::vector<Nanoseconds> offset = rough_offsets(evidence, hosts_);
   std::vector<std::uint32_t> order(points_.size());
   std::iota(order.begin(), order.end(), 0U);

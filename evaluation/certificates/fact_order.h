@@ -14,8 +14,10 @@
 // The order is by clock counts less a rough offset of each clock, so that the points of a fact lie
 // close together. It decides how many points are live at a time, never what follows from them.
 //
-//   const FactOrder order(evidence);
-//   for (const ClockPoint& point : order.points()) graph.advance(point.clock, point.local);
+//   void walk(const CaptureEvidence& evidence, ClockGraph& graph) {
+//     const FactOrder order(evidence);
+//     for (const ClockPoint& point : order.points()) graph.advance(point.clock, point.local);
+//   }
 //
 // Complexity: O(n log n). Memory: 16 bytes a point, 24 a fact.
 #pragma once
@@ -26,7 +28,7 @@
 #include <vector>
 
 #include "algorithms/certificates/rate_bound.h"
-#include "evaluation/certificates/evidence.h"
+#include "evaluation/certificates/capture_evidence.h"
 
 namespace simbench::evaluation {
 
@@ -57,15 +59,16 @@ struct FramePoints {
 // The rates of all clocks, hosts first: as assumed, or within the assumed margin of what is
 // observed, against host 0's clock as time. A clock whose rate shows nowhere is as far from that as
 // two data sheets say.
-std::vector<RateBound> assumed_rates(const Evidence& evidence);
-std::vector<RateBound> equal_rates(const Evidence& evidence, double host_ppm, double camera_ppm);
+std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence);
+std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_ppm,
+                                   double camera_ppm);
 
 class FactOrder {
  public:
   // With the rates that the evidence's assumptions say.
-  explicit FactOrder(const Evidence& evidence);
+  explicit FactOrder(const CaptureEvidence& evidence);
   // With these, by clock.
-  FactOrder(const Evidence& evidence, std::vector<RateBound> rates);
+  FactOrder(const CaptureEvidence& evidence, std::vector<RateBound> rates);
 
   std::size_t hosts() const { return hosts_; }
   std::size_t clocks() const { return rates_.size(); }
@@ -79,8 +82,8 @@ class FactOrder {
   std::span<const std::uint32_t> opened_by(std::size_t point) const;
 
  private:
-  void add_points(const Evidence& evidence);
-  void sort_points(const Evidence& evidence);
+  void add_points(const CaptureEvidence& evidence);
+  void sort_points(const CaptureEvidence& evidence);
   void index_facts();
   std::uint32_t add(std::size_t clock, Nanoseconds local);
   void fact(std::uint32_t from, std::uint32_t to, Picoseconds most, FactKind kind,

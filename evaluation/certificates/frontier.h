@@ -8,9 +8,13 @@
 // FrontierWalk takes the points of a FactOrder from its begin, or from its end, and has at any time
 // the frontier of what it took. save() and restore() let a walk go back.
 //
-//   FrontierWalk past(order, FrontierWalk::kForward), future(order, FrontierWalk::kBackward);
-//   while (!done) past.take_next();
-//   const Distances joined = join(order, past.frontier(), future.frontier());
+//   Distances at_the_middle(const FactOrder& order) {
+//     FrontierWalk past(order, FrontierWalk::kForward), future(order, FrontierWalk::kBackward);
+//     const std::size_t points = order.points().size();
+//     while (past.taken() < points / 2) past.take_next();
+//     while (past.taken() + future.taken() < points) future.take_next();
+//     return join(order, past.frontier(), future.frontier());
+//   }
 //
 // Complexity, for n points of a frontier (the clocks and the open facts): a point O(n), or O(n^2)
 // where a fact tells something new; frontier() O(n^2), join() O(n^3).

@@ -59,7 +59,7 @@ std::optional<double> message_slope(std::vector<ClockReading> readings, double s
 }
 
 // How fast host `b` is against host `a`.
-std::optional<double> host_slope(const Evidence& evidence, std::uint32_t a, std::uint32_t b) {
+std::optional<double> host_slope(const CaptureEvidence& evidence, std::uint32_t a, std::uint32_t b) {
   std::vector<ClockReading> there, back;
   for (const HostMessage& message : evidence.messages()) {
     const std::int64_t sent = nanoseconds_of(message.sent);
@@ -73,7 +73,7 @@ std::optional<double> host_slope(const Evidence& evidence, std::uint32_t a, std:
   return forward ? forward : backward;
 }
 
-std::optional<double> camera_slope(const Evidence& evidence, std::uint32_t camera) {
+std::optional<double> camera_slope(const CaptureEvidence& evidence, std::uint32_t camera) {
   std::vector<ClockReading> readings;
   for (const ClockPollEvidence& poll : evidence.polls()) {
     if (poll.camera != camera) continue;
@@ -90,7 +90,7 @@ double chained_ppm(double own_ppm, double slope) {
 
 }  // namespace
 
-std::vector<std::optional<double>> observed_rates_ppm(const Evidence& evidence) {
+std::vector<std::optional<double>> observed_rates_ppm(const CaptureEvidence& evidence) {
   const std::uint32_t hosts = evidence.layout().hosts;
   std::vector<std::optional<double>> rates(hosts + evidence.layout().cameras.size());
   rates[0] = 0;

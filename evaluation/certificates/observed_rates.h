@@ -6,8 +6,9 @@
 // the fit and the wander of the oscillators, and nothing in the recording proves one. Clocks with
 // fewer than kFewestObserved readings, or less than a second of them, have none.
 //
-//   const std::vector<std::optional<double>> ppm = observed_rates_ppm(evidence);
-//   if (ppm[hosts + camera]) use(RateBound(*ppm[hosts + camera], margin_ppm));
+//   void show(const CaptureEvidence& evidence) {
+//     for (const auto& ppm : observed_rates_ppm(evidence)) use(ppm);
+//   }
 //
 // Complexity: O(readings * log(readings)). Source: laws/line_fit.h.
 #pragma once
@@ -16,13 +17,13 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/certificates/evidence.h"
+#include "evaluation/certificates/capture_evidence.h"
 
 namespace simbench::evaluation {
 
 inline constexpr std::size_t kFewestObserved = 8;
 
 // By clock, hosts first. 0 of host 0.
-std::vector<std::optional<double>> observed_rates_ppm(const Evidence& evidence);
+std::vector<std::optional<double>> observed_rates_ppm(const CaptureEvidence& evidence);
 
 }  // namespace simbench::evaluation

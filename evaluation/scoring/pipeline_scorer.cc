@@ -19,6 +19,7 @@
 #include "evaluation/scoring/session_scores.h"
 #include "evaluation/scoring/stamping.h"
 #include "evaluation/scoring/sync_failures.h"
+#include "recording/collected.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -47,7 +48,9 @@ GatheringSetup gathering_of(const ScorerSetup& setup, const RigLayout& layout) {
           .period = period,
           .interval = Nanoseconds(
               std::llround(static_cast<double>(period.count()) * setup.gathering_interval_periods)),
-          .queue_limit = setup.gathering_queue_frames};
+          .queue_limit = setup.gathering_queue_frames,
+          .hosts = layout.hosts,
+          .host_of_source = collected(layout.cameras, &CameraLayout::host)};
 }
 
 // Returns how many frames a camera may deliver after the warm-up: a capture goes on a while after
@@ -77,6 +80,7 @@ class PipelineScorer::Capture {
   void stamp(FrameBlock& block);
   void settle(FrameBlock& block);
   void stamp_offline();
+  void tell_gatherer(const RecordingEvent& event);
   GroundTruth ground_truth() const;
 
   const ScorerSetup& setup_;
@@ -229,8 +233,22 @@ void PipelineScorer::Capture::add(const RecordingEvent& event) {
   } else {
     sessions_.add(event);
     stamping_.on_event(event);
+    if (gatherer_->wants_evidence()) tell_gatherer(event);
   }
   for (const auto& part : parts_) part->on_event(event);
+}
+
+void PipelineScorer::Capture::tell_gatherer(const RecordingEvent& event) {
+  std::visit(
+      Overloaded{[&](const ClockAdjustment& adjustment) { gatherer_->on_adjustment(adjustment); },
+                 [&](const ExchangeEvent& reported) {
+                   gatherer_->on_exchange(reported.host, reported.exchange);
+                 },
+                 [&](const DevicePoll& poll) {
+                   gatherer_->on_poll(poll.camera, stamping_.sample_of(poll));
+                 },
+                 [](const auto&) {}},
+      event);
 }
 
 GroundTruth PipelineScorer::Capture::ground_truth() const {

@@ -37,8 +37,7 @@ void Stamping::on_event(const RecordingEvent& event) {
       inform_of(camera, [&](DeviceTimeEstimator& each) { each.on_adjustment(*adjustment); });
     }
   } else if (const auto* poll = std::get_if<DevicePoll>(&event)) {
-    const PollSample sample = {unwrap(poll->camera, poll->device), poll->t0, poll->t1,
-                               poll->t0_steady, poll->t1_steady};
+    const PollSample sample = sample_of(*poll);
     inform_of(poll->camera, [&](DeviceTimeEstimator& each) { each.on_poll(sample); });
   } else if (const auto* sighting = std::get_if<LedSighting>(&event)) {
     const LedSample sample = {unwrap(sighting->camera, sighting->sensor), sighting->middle()};

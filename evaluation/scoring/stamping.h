@@ -43,6 +43,9 @@ class Stamping {
   DeviceTime unwrap(std::uint32_t camera, DeviceStamp stamp) {
     return unwrappers_[camera].unwrap(stamp);
   }
+  PollSample sample_of(const DevicePoll& poll) {
+    return {unwrap(poll.camera, poll.device), poll.t0, poll.t1, poll.t0_steady, poll.t1_steady};
+  }
   // Each frame of the scored stream, for the anchor.
   void note(const FrameRecord& frame) {
     if (anchor_) return;

@@ -127,7 +127,7 @@ std::string column_specification(const LatexColumn& column) {
 // Sets a minus where a number has one.
 std::string latex_cell(const std::string& text, bool wraps) {
   const bool is_negative = text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9';
-  const std::string_view shown = std::string_view(text).substr(is_negative ? 1 : 0);
+  const std::string_view shown = std::string_view{text}.substr(is_negative ? 1 : 0);
   return (is_negative ? "$-$" : "") + (wraps ? latex_prose(shown) : latex_escaped(shown));
 }
 

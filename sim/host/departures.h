@@ -53,9 +53,9 @@ class Departures : protected Endpoint {
   const Sent* sent(MessageId id) const;
   // What is known of a part of a message's departure, while a coroutine waits for it.
   struct Search {
-    MessageId id;
-    SteadyTime deadline;
-    TrueTime HostDeparture::*part;
+    MessageId id = 0;
+    SteadyTime deadline{};
+    TrueTime HostDeparture::*part = nullptr;
     std::optional<TrueTime> at{};  // when it is over, once that is known
     bool is_over = false;          // nothing more is to come; without `at` it did not leave in time
     std::optional<TrueTime> look{};  // when to look again; none: not before something has left

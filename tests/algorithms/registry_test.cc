@@ -53,7 +53,7 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
   EXPECT_THAT(entry_names(algorithms<GatheringEntry>()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",
-                          "phase_binning", "coded_trigger", "oracle"));
+                          "phase_binning", "coded_trigger", "certified", "oracle"));
 }
 
 TEST(Registry, MakesEveryBuiltInAlgorithm) {

@@ -35,7 +35,7 @@ RigLayout bare_rig(std::uint32_t hosts, std::vector<CameraLayout> cameras) {
   return {.hosts = hosts, .cameras = std::move(cameras), .frame_rate_hz = 30};
 }
 
-void add_poll(Evidence& evidence, std::uint32_t camera, std::uint32_t device_us, std::int64_t t0_us,
+void add_poll(CaptureEvidence& evidence, std::uint32_t camera, std::uint32_t device_us, std::int64_t t0_us,
               std::int64_t t1_us) {
   evidence.on_event(DevicePoll{.camera = camera,
                                .device = {device_us},
@@ -43,7 +43,7 @@ void add_poll(Evidence& evidence, std::uint32_t camera, std::uint32_t device_us,
                                .t1_steady = steady_us(t1_us)});
 }
 
-void add_frame(Evidence& evidence, std::uint32_t camera, std::uint32_t sensor_us,
+void add_frame(CaptureEvidence& evidence, std::uint32_t camera, std::uint32_t sensor_us,
                std::int64_t arrival_us) {
   const FrameRecord frame{
       .camera = camera, .sensor = {sensor_us}, .arrival_steady = steady_us(arrival_us)};
@@ -54,7 +54,7 @@ void add_frame(Evidence& evidence, std::uint32_t camera, std::uint32_t sensor_us
 // have at the time of their reading, are within 600 us of each other, a register's step and the
 // nanosecond of the host's readings more.
 TEST(Certify, TwoPollsOfOneHostBoundTwoFrames) {
-  Evidence evidence(exact_assumptions(), StreamKind::kDepth);
+  CaptureEvidence evidence(exact_assumptions(), StreamKind::kDepth);
   evidence.on_start(bare_rig(1, {{0}, {0}}));
   add_poll(evidence, 0, 5'000, 1'000, 1'600);
   add_poll(evidence, 1, 90'000, 1'000, 1'600);
@@ -71,7 +71,7 @@ TEST(Certify, TwoPollsOfOneHostBoundTwoFrames) {
 
 // A message each way between two hosts whose clocks differ by an hour: 0.2 ms there and back.
 TEST(Certify, MessagesTieHosts) {
-  Evidence evidence(exact_assumptions(), StreamKind::kDepth);
+  CaptureEvidence evidence(exact_assumptions(), StreamKind::kDepth);
   evidence.on_start(bare_rig(2, {{0}, {1}}));
   for (std::uint32_t host : {0U, 1U}) {
     evidence.on_event(ClockAdjustment{.host = host,
@@ -98,7 +98,7 @@ TEST(Certify, MessagesTieHosts) {
 }
 
 TEST(Certify, WithoutPollsNothingIsKnown) {
-  Evidence evidence(exact_assumptions(), StreamKind::kDepth);
+  CaptureEvidence evidence(exact_assumptions(), StreamKind::kDepth);
   evidence.on_start(bare_rig(1, {{0}, {0}}));
   add_frame(evidence, 0, 5'000, 40'000);
   add_frame(evidence, 1, 90'000, 40'000);
@@ -112,7 +112,7 @@ TEST(Certify, WithoutPollsNothingIsKnown) {
 TEST(Certify, AClockThatIsTooFastIsProved) {
   Assumptions assumed = exact_assumptions();
   assumed.host_rate_ppm = assumed.camera_rate_ppm = 50;
-  Evidence evidence(assumed, StreamKind::kDepth);
+  CaptureEvidence evidence(assumed, StreamKind::kDepth);
   evidence.on_start(bare_rig(1, {{0}}));
   add_poll(evidence, 0, 0, 0, 100);
   add_poll(evidence, 0, 10'003'000, 10'000'000, 10'000'100);
@@ -178,7 +178,7 @@ struct SmallWorld {
 TEST(Certify, IntervalsAreShortestPathsOfTheWholeGraph) {
   const SmallWorld world({});
   const PipelineChoice choice = choose_pipelines(world.scenario, {"two_way_hull"}).front();
-  Evidence evidence(assumptions_of(world.scenario), StreamKind::kDepth);
+  CaptureEvidence evidence(assumptions_of(world.scenario), StreamKind::kDepth);
   record_run(*sim::make_simulation(world.scenario), choice, 1, evidence);
   // A frame of each camera, near each other, in three sets.
   std::vector<EvidenceSet> sets(3);

@@ -5,9 +5,9 @@
 // of a system clock is mapped to the host's steady clock, which nobody sets (steady_readings.h).
 // Messages with a stamp that maps to no instant are left out and counted.
 //
-//   Evidence evidence(assumptions, StreamKind::kDepth);
-//   score_run(source, choice, seed, scorer, ForkedSink(scorer, evidence));
-//   const CertifiedCapture found = certify(evidence, sets);
+//   CaptureEvidence evidence(assumptions_of(scenario), StreamKind::kDepth);
+//   KeptRecording().play(evidence);
+//   const FactOrder order(evidence);
 //
 // Memory: 48 bytes a frame, 32 a poll or message. Complexity: O(1) an event.
 #pragma once
@@ -47,10 +47,10 @@ struct HostMessage {
   SteadyTime received{};  // at the latest, on the receiver's
 };
 
-class Evidence final : public RecordingSink {
+class CaptureEvidence final : public RecordingSink {
  public:
   // Frames of this stream count.
-  Evidence(const Assumptions& assumptions, StreamKind stream);
+  CaptureEvidence(const Assumptions& assumptions, StreamKind stream);
 
   void on_start(const RigLayout& layout) override;
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;

@@ -1,19 +1,19 @@
-#include "evaluation/certificates/evidence.h"
+#include "evaluation/certificates/capture_evidence.h"
 
 #include <variant>
 
 namespace simbench::evaluation {
 
-Evidence::Evidence(const Assumptions& assumptions, StreamKind stream)
+CaptureEvidence::CaptureEvidence(const Assumptions& assumptions, StreamKind stream)
     : assumptions_(assumptions), stream_(stream) {}
 
-void Evidence::on_start(const RigLayout& layout) {
+void CaptureEvidence::on_start(const RigLayout& layout) {
   layout_ = layout;
   registers_.assign(layout.cameras.size(), {});
   readings_.assign(layout.hosts, {});
 }
 
-void Evidence::on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) {
+void CaptureEvidence::on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) {
   for_each_frame(frames, truths, [&](const FrameRecord& frame, const FrameTruth* truth) {
     const DeviceTime sensor = registers_[frame.camera].unwrap(frame.sensor);
     if (frame.stream != stream_) return;
@@ -26,7 +26,7 @@ void Evidence::on_frames(std::span<const FrameRecord> frames, std::span<const Fr
   });
 }
 
-void Evidence::on_event(const RecordingEvent& event) {
+void CaptureEvidence::on_event(const RecordingEvent& event) {
   std::visit(
       Overloaded{
           [&](const ClockAdjustment& adjustment) { readings_[adjustment.host].add(adjustment); },
@@ -40,14 +40,14 @@ void Evidence::on_event(const RecordingEvent& event) {
 }
 
 // Between t1 and t4 the peer may have told but one of its two stamps, which then stands for both.
-void Evidence::add_exchange(std::uint32_t host, const Exchange& exchange) {
+void CaptureEvidence::add_exchange(std::uint32_t host, const Exchange& exchange) {
   const std::optional<HostTime>& came = exchange.t2 ? exchange.t2 : exchange.t3;
   const std::optional<HostTime>& left = exchange.t3 ? exchange.t3 : exchange.t2;
   add_message(host, exchange.t1, exchange.peer, came);
   add_message(exchange.peer, left, host, exchange.t4);
 }
 
-void Evidence::add_message(std::uint32_t from, const std::optional<HostTime>& sent,
+void CaptureEvidence::add_message(std::uint32_t from, const std::optional<HostTime>& sent,
                            std::uint32_t to, const std::optional<HostTime>& received) {
   if (!sent || !received) return;
   const Nanoseconds error = from_ms(assumptions_.host_stamp_ms);

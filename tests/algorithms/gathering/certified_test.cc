@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+
+#include "algorithms/gathering/gatherers.h"
+#include "tests/algorithms/gathering/collected_sets.h"
+
+namespace simbench {
+namespace {
+
+std::unique_ptr<Gatherer> made(const GatheringSetup& setup) {
+  return make_certified_gatherer(setup, {.hosts = 1, .host_of_camera = {0, 0}});
+}
+
+void push_pulses(Gatherer& gatherer, CollectedSets& out, Microseconds second_is_late = {}) {
+  for (std::int64_t pulse = 0; pulse < 20; ++pulse) {
+    for (const std::uint32_t source : {0U, 1U}) {
+      GatherFrame frame = frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse);
+      if (source == 1) frame.sensor += second_is_late;
+      gatherer.push(frame, out);
+    }
+  }
+}
+
+TEST(CertifiedGatherer, EmitsWhatIsSure) {
+  const auto gatherer = made(short_setup(2));
+  gatherer->on_poll(0, {});
+  gatherer->on_poll(1, {});
+  CollectedSets out;
+  push_pulses(*gatherer, out);
+  EXPECT_EQ(out.sets.size(), 20U);
+  EXPECT_EQ(gatherer->discarded(), 0U);
+}
+
+TEST(CertifiedGatherer, WithoutReadingsNothingIsSure) {
+  const auto gatherer = made(short_setup(2));
+  gatherer->on_poll(0, {});
+  CollectedSets out;
+  push_pulses(*gatherer, out);
+  EXPECT_TRUE(out.sets.empty());
+  EXPECT_EQ(gatherer->discarded(), 40U);
+}
+
+// The stamps agree, the exposures do not: a camera a whole period late by its own clock.
+TEST(CertifiedGatherer, StampsThatAgreeWronglyAreNoSet) {
+  const auto gatherer = made(short_setup(2));
+  gatherer->on_poll(0, {});
+  gatherer->on_poll(1, {});
+  CollectedSets out;
+  push_pulses(*gatherer, out, std::chrono::duration_cast<Microseconds>(from_ms(kShortPeriodMs)));
+  EXPECT_TRUE(out.sets.empty());
+}
+
+}  // namespace
+}  // namespace simbench
