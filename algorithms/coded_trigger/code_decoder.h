@@ -19,7 +19,7 @@
 // that auto-exposure does not look like a code.
 //
 // Bears: losses, drops, late starts, wraps (stamps come unwrapped), rates of a few hundred ppm,
-// gaps of kLongestGapPeriods, noise of a quarter of the smallest step between shifts.
+// gaps of kLongestGapPeriods, noise of a sixth of the smallest step between shifts.
 //
 // Complexity: O(1) a frame once the place is known, else the search's. Memory: the search's. No
 // allocation once made. Source: docs/coded_trigger.md section 4.

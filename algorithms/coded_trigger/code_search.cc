@@ -14,8 +14,8 @@ namespace {
 constexpr double kWidth = 8;
 // Sums over slots further from zero lose digits.
 constexpr std::int64_t kMostSlots = 100'000;
-// Another place must leave so many squares of the smallest step: more than two wrong symbols.
-constexpr double kStepsBehind = 2.5;
+// Another place must leave so much more, in squares of what may pass for a pulse.
+constexpr double kWrongFramesBehind = 1.25;
 // A longer gap begins anew: the rate of the camera's clock is not known yet.
 constexpr std::int64_t kLongestSearchGap = 32;
 
@@ -47,7 +47,7 @@ double smallest_step_us(const TriggerCode& code) {
 }
 
 double most_noise_us(const TriggerCode& code, const CodeDecoderSettings& settings) {
-  constexpr double kStepsPerNoise = 4;
+  constexpr double kStepsPerNoise = 6;
   const double step_us = smallest_step_us(code);
   return step_us > 0 ? step_us / kStepsPerNoise : kWidth * settings.noise.noise_us;
 }
@@ -56,13 +56,16 @@ CodeSearch::CodeSearch(std::shared_ptr<const CodedPulses> pulses,
                        const CodeDecoderSettings& settings)
     : pulses_(std::move(pulses)),
       error_probability_(settings.error_probability),
-      least_squares_behind_(kStepsBehind * smallest_step_us(pulses_->code) *
-                            smallest_step_us(pulses_->code)),
+      least_evidence_nats_(
+          std::log(static_cast<double>(pulses_->code.length()) / settings.error_probability)),
       most_noise_us_(most_noise_us(pulses_->code, settings)),
       most_step_us_(to_ns(pulses_->code.range()) * 1e-3 + kWidth * settings.noise.noise_us),
       most_rate_us_(kWidth * settings.noise.rate_error_ppm * 1e-6 * to_ns(pulses_->code.period()) *
                     1e-3),
       correlator_(pulses_->code, settings.noise) {
+  // Codes that only leave pulses out have no shifts that a wrong stamp could be taken for.
+  const bool has_shifts = smallest_step_us(pulses_->code) > 0;
+  if (has_shifts) least_squares_behind_ = kWrongFramesBehind * most_step_us_ * most_step_us_;
   points_.reserve(kMostHeld);
 }
 
@@ -94,8 +97,12 @@ bool CodeSearch::is_like_a_pulse(std::int64_t slots, double step_us) const {
 }
 
 bool CodeSearch::is_sure() const {
+  // sqrt(2 pi e)
+  constexpr double kWidthOfNoise = 4.132731354122493;
+  const double gain_nats = std::log(2 * most_step_us_ / (kWidthOfNoise * verdict_.noise_us));
   return verdict_.error_probability <= error_probability_ &&
-         verdict_.squares_behind >= least_squares_behind_;
+         verdict_.squares_behind >= least_squares_behind_ &&
+         static_cast<double>(points_.size() - 2) * gain_nats >= least_evidence_nats_;
 }
 
 // What the correlator does not have yet.

@@ -1,9 +1,16 @@
 // Looks for a camera's place in the trigger's code, frame by frame.
 //
-// Frames are held until they name one place: with the stated probability of error, and so that one
-// frame whose stamp is wrong by a whole step of the code would not have made another place of it.
-// For the latter, every other place must contradict at least three frames: a sequence in which any
-// `order` symbols stand somewhere has no redundancy in so few. Frames must come as
+// Frames are held until they name one place:
+//
+//   - all other places together have at most the stated probability of error (Bayes);
+//   - it is no chance: that frames which no code moved, uniform in what passes for a pulse, lie so
+//     near to one of all places has at most the same probability. Each frame but two, which level
+//     and rate take, counts ln(width / (noise * sqrt(2 pi e)));
+//   - one frame whose stamp is wrong by as much as passes for a pulse would not have made another
+//     place of it: every other place leaves a quarter more than the square of that. A sequence in
+//     which any `order` symbols stand somewhere has no redundancy in so few.
+//
+// Frames must come as
 // pulses do: two consecutive ones differ from whole periods by no more than the code, the clocks'
 // rates and the noise allow. One that does not, as when the camera runs free or starts unsteadily,
 // begins anew. The oldest frames are given up, one by one, while no place of the code explains all
@@ -80,7 +87,8 @@ class CodeSearch {
 
   std::shared_ptr<const CodedPulses> pulses_;
   double error_probability_;
-  double least_squares_behind_;
+  double least_squares_behind_ = 0;
+  double least_evidence_nats_;
   double most_noise_us_;
   double most_step_us_;  // of one pulse to the next, by code and noise
   double most_rate_us_;  // a slot

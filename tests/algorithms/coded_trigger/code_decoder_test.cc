@@ -4,6 +4,7 @@
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -228,6 +229,26 @@ TEST(CodeDecoder, AnUnsteadyStartCostsNoSteadyFrame) {
     expect_right(indices, frames, pulses->code.length(), "seed " + std::to_string(seed));
     for (std::size_t i = 300; i < frames.size(); ++i) {
       EXPECT_TRUE(indices.all[i].has_value()) << "seed " << seed << ", frame " << i;
+    }
+  }
+}
+
+// Frames that scatter as if by a code, of which some lie near some place by chance.
+TEST(CodeDecoder, ChanceIsNoPlace) {
+  const auto pulses = pulses_of(TriggerCode::frequency(from_ns(1e9 / 45), 10, 2, from_us(100)));
+  const double period_us = to_ns(pulses->code.period()) * 1e-3;
+  for (const double spread_us : {60.0, 150.0, 250.0, 500.0}) {
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+      boost::random::mt19937 random(seed);
+      boost::random::uniform_01<double> uniform;
+      CodeDecoder decoder(pulses, {});
+      std::size_t found = 0;
+      for (std::int64_t i = 0; i < 2000; ++i) {
+        const double us = static_cast<double>(i) * period_us + spread_us * uniform(random);
+        const auto whole = static_cast<std::int64_t>(us);
+        found += decoder.push(DeviceTime(Microseconds(whole)), 0).has_found_place ? 1 : 0;
+      }
+      EXPECT_EQ(found, 0U) << spread_us << " us, seed " << seed;
     }
   }
 }

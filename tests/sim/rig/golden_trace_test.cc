@@ -104,6 +104,7 @@ const std::vector<Golden>& goldens() {
       {"18cam_6host_45fps_lan", "yoon2021_both", 6201, 0x56d9dd79e96becf3, 0xc0e51c0f20653787},
       {"18cam_6host_45fps_staggered_start", "yoon2021_both", 4406, 0x8d2a8e71dcd17a65,
        0x7fd6fb93fcd5dd5f},
+      {"18cam_6host_90fps_coded", "coded", 2410, 0xe20ea7c952ea35d6, 0x117709101bc1e13c},
       {"18cam_6host_90fps_full_slave", "yoon2021_both", 8543, 0x4ccd0cbf2a66ed27,
        0x8aa78c6927ea637e},
       {"18cam_6host_30fps_without_trigger", "phase_rate", 24745, 0x5f99fae01df4dc87,
