@@ -13,7 +13,7 @@ std::unique_ptr<Gatherer> made(const GatheringSetup& setup) {
   return make_certified_gatherer(setup, {.hosts = 1, .host_of_camera = {0, 0}});
 }
 
-void push_pulses(Gatherer& gatherer, CollectedSets& out, Microseconds second_is_late = {}) {
+void push_two(Gatherer& gatherer, CollectedSets& out, Microseconds second_is_late = {}) {
   for (std::int64_t pulse = 0; pulse < 20; ++pulse) {
     for (const std::uint32_t source : {0U, 1U}) {
       GatherFrame frame = frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse);
@@ -28,7 +28,7 @@ TEST(CertifiedGatherer, EmitsWhatIsSure) {
   gatherer->on_poll(0, {});
   gatherer->on_poll(1, {});
   CollectedSets out;
-  push_pulses(*gatherer, out);
+  push_two(*gatherer, out);
   EXPECT_EQ(out.sets.size(), 20U);
   EXPECT_EQ(gatherer->discarded(), 0U);
 }
@@ -37,7 +37,7 @@ TEST(CertifiedGatherer, WithoutReadingsNothingIsSure) {
   const auto gatherer = made(short_setup(2));
   gatherer->on_poll(0, {});
   CollectedSets out;
-  push_pulses(*gatherer, out);
+  push_two(*gatherer, out);
   EXPECT_TRUE(out.sets.empty());
   EXPECT_EQ(gatherer->discarded(), 40U);
 }
@@ -48,7 +48,7 @@ TEST(CertifiedGatherer, StampsThatAgreeWronglyAreNoSet) {
   gatherer->on_poll(0, {});
   gatherer->on_poll(1, {});
   CollectedSets out;
-  push_pulses(*gatherer, out, std::chrono::duration_cast<Microseconds>(from_ms(kShortPeriodMs)));
+  push_two(*gatherer, out, std::chrono::duration_cast<Microseconds>(from_ms(kShortPeriodMs)));
   EXPECT_TRUE(out.sets.empty());
 }
 

@@ -35,8 +35,8 @@ RigLayout bare_rig(std::uint32_t hosts, std::vector<CameraLayout> cameras) {
   return {.hosts = hosts, .cameras = std::move(cameras), .frame_rate_hz = 30};
 }
 
-void add_poll(CaptureEvidence& evidence, std::uint32_t camera, std::uint32_t device_us, std::int64_t t0_us,
-              std::int64_t t1_us) {
+void add_poll(CaptureEvidence& evidence, std::uint32_t camera, std::uint32_t device_us,
+              std::int64_t t0_us, std::int64_t t1_us) {
   evidence.on_event(DevicePoll{.camera = camera,
                                .device = {device_us},
                                .t0_steady = steady_us(t0_us),
