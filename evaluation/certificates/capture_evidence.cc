@@ -13,7 +13,8 @@ void CaptureEvidence::on_start(const RigLayout& layout) {
   readings_.assign(layout.hosts, {});
 }
 
-void CaptureEvidence::on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) {
+void CaptureEvidence::on_frames(std::span<const FrameRecord> frames,
+                                std::span<const FrameTruth> truths) {
   for_each_frame(frames, truths, [&](const FrameRecord& frame, const FrameTruth* truth) {
     const DeviceTime sensor = registers_[frame.camera].unwrap(frame.sensor);
     if (frame.stream != stream_) return;
@@ -48,7 +49,7 @@ void CaptureEvidence::add_exchange(std::uint32_t host, const Exchange& exchange)
 }
 
 void CaptureEvidence::add_message(std::uint32_t from, const std::optional<HostTime>& sent,
-                           std::uint32_t to, const std::optional<HostTime>& received) {
+                                  std::uint32_t to, const std::optional<HostTime>& received) {
   if (!sent || !received) return;
   const Nanoseconds error = from_ms(assumptions_.host_stamp_ms);
   const auto left = readings_[from].when(*sent - error, *sent + error);

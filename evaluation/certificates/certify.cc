@@ -25,8 +25,8 @@ struct Reach {
 
 class Certifier {
  public:
-  Certifier(const CaptureEvidence& evidence, const FactOrder& order, std::span<const EvidenceSet> sets,
-            Horizon horizon, const PairVisitor& visit)
+  Certifier(const CaptureEvidence& evidence, const FactOrder& order,
+            std::span<const EvidenceSet> sets, Horizon horizon, const PairVisitor& visit)
       : evidence_(evidence),
         order_(order),
         sets_(sets),

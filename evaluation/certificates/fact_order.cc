@@ -75,7 +75,8 @@ void sort_by_key(std::size_t count, std::size_t keys, const Key& key,
 
 }  // namespace
 
-std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_ppm, double camera_ppm) {
+std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_ppm,
+                                   double camera_ppm) {
   std::vector<RateBound> rates(evidence.layout().hosts, RateBound(host_ppm));
   rates.resize(rates.size() + evidence.layout().cameras.size(), RateBound(camera_ppm));
   return rates;
@@ -96,7 +97,8 @@ std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence) {
   return rates;
 }
 
-FactOrder::FactOrder(const CaptureEvidence& evidence) : FactOrder(evidence, assumed_rates(evidence)) {}
+FactOrder::FactOrder(const CaptureEvidence& evidence)
+    : FactOrder(evidence, assumed_rates(evidence)) {}
 
 FactOrder::FactOrder(const CaptureEvidence& evidence, std::vector<RateBound> rates)
     : hosts_(evidence.layout().hosts), rates_(std::move(rates)) {

@@ -59,7 +59,8 @@ std::optional<double> message_slope(std::vector<ClockReading> readings, double s
 }
 
 // How fast host `b` is against host `a`.
-std::optional<double> host_slope(const CaptureEvidence& evidence, std::uint32_t a, std::uint32_t b) {
+std::optional<double> host_slope(const CaptureEvidence& evidence, std::uint32_t a,
+                                 std::uint32_t b) {
   std::vector<ClockReading> there, back;
   for (const HostMessage& message : evidence.messages()) {
     const std::int64_t sent = nanoseconds_of(message.sent);
