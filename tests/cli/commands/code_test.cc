@@ -103,6 +103,19 @@ TEST_F(CodeCommand, AShiftWithinTheNoiseIsSaidToBeHidden) {
   EXPECT_THAT(result.out, HasSubstr("does NOT find its place"));
 }
 
+TEST_F(CodeCommand, TheFigureShowsTheCodeInTheStamps) {
+  const ProgramResult drawn = run({"figure", "coded_trigger", "--scenario", kCodedScenario, "--set",
+                                   "/timeline/frames=80", "--output", "code.csv"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(content("code.csv"),
+              AllOf(HasSubstr("Pulses as the cameras' own clocks show them"),
+                    HasSubstr("the code,"), HasSubstr("The search for the place in the code")));
+  const ProgramResult without =
+      run({"figure", "coded_trigger", "--scenario", "3cam_1host_30fps", "--output", "none.csv"});
+  EXPECT_EQ(without.status, 2);
+  EXPECT_THAT(without.err, HasSubstr("the scenario's trigger has no code (/trigger/code)"));
+}
+
 TEST_F(CodeCommand, ARunSaysHowThePlacesWereFound) {
   const ProgramResult result =
       run({"run", "--scenario", kCodedScenario, "--pipelines", "coded", "--seeds", "1", "--set",
