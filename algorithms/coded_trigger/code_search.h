@@ -12,8 +12,8 @@
 //
 // Frames must come as pulses do: two consecutive ones differ from whole periods by no more than the
 // code, the clocks' rates and the noise allow. One that does not, as when the camera runs free or
-// starts unsteadily, begins anew. The oldest frames are given up, one by one, while no place of the code explains all
-// that are held, and when kMostHeld are held.
+// starts unsteadily, begins anew. The oldest frames are given up, one by one, while no place of the
+// code explains all that are held, and when kMostHeld are held.
 //
 // Complexity: O(1) a frame until kFirstLook are held, then O(length), and as much for each frame
 // that is given up. Memory: the correlator's. Nothing is allocated once it is made.
