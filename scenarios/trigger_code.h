@@ -6,7 +6,7 @@
 //                       mode's less the guard, and than an exposure; no pulse left out.
 //                       Assumptions: the maker documents none of this, and the shutter model knows
 //                       no window
-//   genlock             one pulse is answered and those of two mode periods less the guard ignored;
+//   genlock             one pulse is answered and those of two mode periods less the guard ignored,
 //                       from one answered to the next it is longer than that, and than exposure
 //                       and readout. Pulses may be left out: the camera waits
 //   industrial          the same with one mode period (a slave whose profile begins at the pulse)

@@ -2,19 +2,18 @@
 //
 // Frames are held until they name one place:
 //
-//   - all other places together have at most the stated probability of error (Bayes);
+//   - all other places together have at most the stated probability of error (Bayes),
 //   - it is no chance: that frames which no code moved, uniform in what passes for a pulse, lie so
 //     near to one of all places has at most the same probability. Each frame but two, which level
-//     and rate take, counts ln(width / (noise * sqrt(2 pi e)));
+//     and rate take, counts ln(width / (noise * sqrt(2 pi e))),
 //   - one frame whose stamp is wrong by as much as passes for a pulse would not have made another
 //     place of it: every other place leaves a quarter more than the square of that. A sequence in
 //     which any `order` symbols stand somewhere has no redundancy in so few.
 //
-// Frames must come as
-// pulses do: two consecutive ones differ from whole periods by no more than the code, the clocks'
-// rates and the noise allow. One that does not, as when the camera runs free or starts unsteadily,
-// begins anew. The oldest frames are given up, one by one, while no place of the code explains all
-// that are held, and when kMostHeld are held.
+// Frames must come as pulses do: two consecutive ones differ from whole periods by no more than the
+// code, the clocks' rates and the noise allow. One that does not, as when the camera runs free or
+// starts unsteadily, begins anew. The oldest frames are given up, one by one, while no place of the
+// code explains all that are held, and when kMostHeld are held.
 //
 // Complexity: O(1) a frame until kFirstLook are held, then O(length), and as much for each frame
 // that is given up. Memory: the correlator's.
