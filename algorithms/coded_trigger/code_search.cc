@@ -40,7 +40,7 @@ double smallest_step_us(const TriggerCode& code) {
   const std::set<std::int32_t> shifts(code.shifts_ns().begin(), code.shifts_ns().end());
   double step_us = 0;
   for (auto next = shifts.begin(), last = next++; next != shifts.end(); last = next++) {
-    const double us = (std::int64_t{*next} - *last) * 1e-3;
+    const double us = static_cast<double>(std::int64_t{*next} - *last) * 1e-3;
     step_us = step_us == 0 ? us : std::min(step_us, us);
   }
   return step_us;

@@ -33,7 +33,7 @@ class CodedTime final : public DeviceTimeEstimator {
     SIMBENCH_ASSERT(decoder_.has_value(), "a coded trigger has a code");
     if (!first_) first_ = sample.sensor;
     const Decoded decoded = decoder_->push(sample.sensor, sample.exposure_us);
-    if (!decoded.is_refused) learn(decoded, sample.sensor + half_exposure(sample));
+    if (!decoded.is_refused) take(decoded, sample.sensor + half_exposure(sample));
     if (!anchor_) {
       const Int128 elapsed_us = Int128{us_of(sample.sensor)} - us_of(*first_);
       return GlobalTime(Nanoseconds(saturate(1000 * elapsed_us)));
@@ -52,7 +52,7 @@ class CodedTime final : public DeviceTimeEstimator {
     return pulses_->exposures_begin_at_pulse ? -half : half;
   }
 
-  void learn(const Decoded& decoded, DeviceTime at_pulse) {
+  void take(const Decoded& decoded, DeviceTime at_pulse) {
     held_.push_back(at_pulse);
     held_.erase(held_.begin(), held_.begin() + decoded.given_up);
     if (decoded.has_found_place) begin_line();

@@ -41,7 +41,7 @@ class CodedTriggerGatherer final : public BlockGatherer<CodedTriggerGatherer> {
 
   std::uint64_t discarded() const override { return without_index_ + matcher_.discarded(); }
   bool from_first_frame() const override { return true; }
-  std::optional<PlaceSearch> search() const override;
+  std::optional<PlaceSearch> place_search() const override;
 
  private:
   struct Source {
@@ -100,7 +100,7 @@ class CodedTriggerGatherer final : public BlockGatherer<CodedTriggerGatherer> {
   std::uint64_t without_index_ = 0;
 };
 
-std::optional<PlaceSearch> CodedTriggerGatherer::search() const {
+std::optional<PlaceSearch> CodedTriggerGatherer::place_search() const {
   PlaceSearch all;
   for (const Source& source : sources_) {
     const CodeLock& lock = source.decoder.lock();

@@ -189,7 +189,7 @@ std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setu
 // set comes, and other sources' frames wait for it, kCodedTriggerQueue of each; their oldest are
 // discarded.
 //
-// search() says how long it took and how sure the places are.
+// place_search() says how long it took and how sure the places are.
 //
 // Complexity: O(1) per frame once a place is known, else O(length of the code); sets as
 // gathering/fronts.h. Memory: 48 bytes a source and pulse of the code, and the queues.

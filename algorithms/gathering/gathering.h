@@ -114,7 +114,7 @@ class Gatherer {
   virtual void on_exchange(PeerId /*host*/, const Exchange& /*exchange*/) {}
   virtual void on_adjustment(const ClockAdjustment& /*adjustment*/) {}
   // How it found its sources' places in the trigger's code, so far; nothing if it looks for none.
-  virtual std::optional<PlaceSearch> search() const { return std::nullopt; }
+  virtual std::optional<PlaceSearch> place_search() const { return std::nullopt; }
 };
 
 // The base of a gatherer whose blocks shall cost no virtual call per frame:

@@ -288,7 +288,7 @@ SeedScore PipelineScorer::Capture::finish() {
   score.ground_truth = ground_truth();
   if (score.ground_truth != GroundTruth::kNone) account_.add_to(score.sets);
   score.sets.discarded_frames = static_cast<std::int64_t>(gatherer_->discarded());
-  score.search = gatherer_->search();
+  score.search = gatherer_->place_search();
   if (score.search && score.search->found < score.search->sources) {
     score.cost.notes.push_back(fmt::format("{} of {} cameras did not find their place in the code",
                                            score.search->sources - score.search->found,

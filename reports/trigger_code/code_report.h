@@ -30,7 +30,7 @@ struct CodeMode {
   bool is_own = false;  // the scenario's own mode
   scenarios::CodeLimits limits;
   double frames_per_s = 0;  // if it follows
-  std::string problem;      // why it does not; empty: it does
+  std::string problem{};    // why it does not; empty: it does
 };
 
 struct TriggerCodeResult {

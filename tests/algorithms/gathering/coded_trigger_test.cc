@@ -74,7 +74,7 @@ TEST(CodedTriggerGatherer, FindsEverySetThroughLossesAndStartsOneByOne) {
   const CollectedSets out = sets_of_rig(*gatherer, frames);
   EXPECT_EQ(out.pure(), static_cast<std::int64_t>(out.sets.size()));
   EXPECT_EQ(out.pure(), delivered_by_all(frames, 18, 0)) << "also those before the last search";
-  const PlaceSearch search = *gatherer->search();
+  const PlaceSearch search = *gatherer->place_search();
   EXPECT_EQ(search.sources, 18U);
   EXPECT_EQ(search.found, 18U);
   EXPECT_EQ(search.again, 0U);
@@ -103,7 +103,7 @@ TEST(CodedTriggerGatherer, ARebootOfACameraIsNoWrongSet) {
   const CollectedSets out = sets_of_rig(*gatherer, frames);
   EXPECT_EQ(out.pure(), static_cast<std::int64_t>(out.sets.size()));
   EXPECT_EQ(out.pure(), 900);
-  EXPECT_EQ(gatherer->search()->again, 1U);
+  EXPECT_EQ(gatherer->place_search()->again, 1U);
 }
 
 TEST(CodedTriggerGatherer, WithoutItsCodeThereIsNoSet) {
@@ -112,7 +112,7 @@ TEST(CodedTriggerGatherer, WithoutItsCodeThereIsNoSet) {
   const auto frames = rig_frames(*even, {{}, {}}, 2000, 1);
   const auto gatherer = coded_gatherer(pulses, 2);
   EXPECT_TRUE(sets_of_rig(*gatherer, frames).sets.empty());
-  EXPECT_EQ(gatherer->search()->found, 0U);
+  EXPECT_EQ(gatherer->place_search()->found, 0U);
 }
 
 TEST(CodedTriggerGatherer, ItsQueueIsBounded) {

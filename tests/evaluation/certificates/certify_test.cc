@@ -45,8 +45,10 @@ void add_poll(CaptureEvidence& evidence, std::uint32_t camera, std::uint32_t dev
 
 void add_frame(CaptureEvidence& evidence, std::uint32_t camera, std::uint32_t sensor_us,
                std::int64_t arrival_us) {
-  const FrameRecord frame{
-      .camera = camera, .sensor = {sensor_us}, .arrival_steady = steady_us(arrival_us)};
+  FrameRecord frame;
+  frame.camera = camera;
+  frame.sensor = {sensor_us};
+  frame.arrival_steady = steady_us(arrival_us);
   evidence.on_frame(frame, nullptr);
 }
 
