@@ -30,6 +30,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -74,7 +75,7 @@ class CodeDecoder {
       // Written out, since nearly all frames come here.
       const double grid_ns = static_cast<double>(at_ns - at_ns_) - grid_offset_ns_;
       const double slots = grid_ns / step_ns_;
-      const auto whole = static_cast<std::int64_t>(slots + 0.5);
+      const std::int64_t whole = std::llround(slots);
       if (whole >= 1 && whole <= kLongestGapPeriods && follows(at_ns, grid_ns, whole))
         return {0, 1};
     }

@@ -57,6 +57,7 @@ std::vector<Nanoseconds> rough_offsets(const CaptureEvidence& evidence, std::siz
   for (const FrameEvidence& frame : evidence.frames())
     tie(frame.camera, frame.sensor, frame.arrival);
   std::vector<Nanoseconds> rough;
+  rough.reserve(offset.size());
   for (const auto& known : offset) rough.push_back(known.value_or(Nanoseconds(0)));
   return rough;
 }

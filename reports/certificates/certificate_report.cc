@@ -138,7 +138,7 @@ Block assumed_block(const CertificateRun& run) {
     block.items.push_back(fmt::format("{} = {:g}: {}", line.name, line.value, line.means));
   }
   if (run.options.horizon == evaluation::Horizon::kCausal) {
-    block.prose.push_back("Each set knows only what came before its last exposure (--causal).");
+    block.prose.emplace_back("Each set knows only what came before its last exposure (--causal).");
   }
   return block;
 }
