@@ -9,6 +9,7 @@
 #include "algorithms/certificates/online_certificates.h"
 #include "algorithms/gathering/gatherers.h"
 #include "algorithms/parameter_binder.h"
+#include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -25,6 +26,7 @@ class CertifiedGatherer final : public Gatherer, private FrameSetSink {
   }
 
   void push(const GatherFrame& frame, FrameSetSink& sink) override {
+    SIMBENCH_ASSERT(frame.source < waiting_.size(), "a frame of a source that does not exist");
     boost::circular_buffer<Waiting>& frames = waiting_[frame.source];
     if (frames.full()) {
       certificates_.release(frames.front().ticket);
