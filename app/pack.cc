@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 #include <variant>
@@ -31,9 +32,9 @@ class NewNames {
   explicit NewNames(std::string kind) : kind_(std::move(kind)) {}
 
   std::string of(const std::string& old) {
-    const auto known = std::ranges::find(old_, old);
-    if (known == old_.end()) old_.push_back(old);
-    return kind_ + std::to_string(known - old_.begin());
+    const auto number = std::ranges::find(old_, old) - old_.begin();
+    if (number == std::ssize(old_)) old_.push_back(old);
+    return kind_ + std::to_string(number);
   }
 
   void add_notes(std::vector<std::string>& notes) const {

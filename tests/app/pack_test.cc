@@ -58,6 +58,7 @@ TEST(Pack, HasNoNamesAndTheSameDiagnosis) {
   EXPECT_THAT(packed.notes, Contains("host1 is pc_secret_right"));
   EXPECT_THAT(everything_in(folder), Not(HasSubstr("secret")));
   EXPECT_THAT(everything_in(folder), HasSubstr("host0.1.csv"));
+  EXPECT_THAT(everything_in(folder), HasSubstr(",camera1,host1"));
   const RecordedStreams again = recorded_streams({folder + "/frames.csv"});
   ASSERT_EQ(again.streams.size(), recorded.streams.size());
   const evaluation::Diagnosis of_rig = evaluation::diagnose(recorded.streams, {});
