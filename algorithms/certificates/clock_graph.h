@@ -52,6 +52,9 @@ class ClockGraph {
   // No chain of facts bounds the difference.
   static constexpr Picoseconds kUnbounded{std::int64_t{1} << 62};
 
+  // Sums with kUnbounded may be somewhat less than it.
+  static constexpr bool is_bounded(Picoseconds most) { return most < kUnbounded / 2; }
+
   explicit ClockGraph(std::vector<RateBound> clocks);
 
   std::size_t clocks() const { return newest_.size(); }

@@ -5,10 +5,6 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kRegisterStep{1000};
-constexpr Nanoseconds kSteadyStep{1};
-constexpr Picoseconds kFarAway = ClockGraph::kUnbounded / 2;
-
 std::vector<RateBound> rates_of(const CertifiedRig& rig) {
   std::vector<RateBound> rates(rig.hosts, RateBound(rig.host_rate_ppm));
   rates.resize(rig.hosts + rig.host_of_camera.size(), RateBound(rig.camera_rate_ppm));
@@ -18,10 +14,10 @@ std::vector<RateBound> rates_of(const CertifiedRig& rig) {
 }  // namespace
 
 OnlineCertificates::OnlineCertificates(const CertifiedRig& rig)
-    : rig_(rig), graph_(rates_of(rig)), readings_(rig.hosts) {}
+    : rig_(rig), graph_(rates_of(rig)), facts_(rig.hosts, rig.host_stamp_error) {}
 
 void OnlineCertificates::on_adjustment(const ClockAdjustment& adjustment) {
-  readings_[adjustment.host].add(adjustment);
+  facts_.add(adjustment);
 }
 
 OnlineCertificates::Instant OnlineCertificates::instant(std::size_t clock, Nanoseconds local) {
@@ -54,21 +50,11 @@ void OnlineCertificates::on_poll(std::uint32_t camera, const PollSample& poll) {
 }
 
 void OnlineCertificates::on_exchange(std::uint32_t host, const Exchange& exchange) {
-  const std::optional<HostTime>& came = exchange.t2 ? exchange.t2 : exchange.t3;
-  const std::optional<HostTime>& left = exchange.t3 ? exchange.t3 : exchange.t2;
-  message(host, exchange.t1, exchange.peer, came);
-  message(exchange.peer, left, host, exchange.t4);
-}
-
-void OnlineCertificates::message(std::uint32_t from, const std::optional<HostTime>& sent,
-                                 std::uint32_t to, const std::optional<HostTime>& received) {
-  if (!sent || !received) return;
-  const Nanoseconds error = rig_.host_stamp_error;
-  const auto left = readings_[from].when(*sent - error, *sent + error);
-  const auto came = readings_[to].when(*received - error, *received + error);
-  if (!left || !came) return;
-  const Instant departure = instant(from, left->first.time_since_epoch());
-  happened(departure, instant(to, came->last.time_since_epoch()));
+  for (const std::optional<HostMessage>& message : facts_.messages_of(host, exchange).usable) {
+    if (!message) continue;
+    const Instant departure = instant(message->from, message->sent.time_since_epoch());
+    happened(departure, instant(message->to, message->received.time_since_epoch()));
+  }
 }
 
 OnlineCertificates::Ticket OnlineCertificates::on_frame(std::uint32_t camera, DeviceTime sensor) {
@@ -82,7 +68,7 @@ void OnlineCertificates::release(const Ticket& ticket) { graph_.release(ticket.p
 
 Picoseconds OnlineCertificates::later_by(const Ticket& from, const Ticket& to) const {
   const Picoseconds points = graph_.most(from.point, to.point);
-  if (points >= kFarAway) return ClockGraph::kUnbounded;
+  if (!ClockGraph::is_bounded(points)) return ClockGraph::kUnbounded;
   const RateBound& rate_from = graph_.rate_of(rig_.hosts + from.camera);
   const RateBound& rate_to = graph_.rate_of(rig_.hosts + to.camera);
   return points + rate_to.most(to.most) - rate_from.least(from.least);

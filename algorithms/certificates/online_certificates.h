@@ -21,12 +21,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "algorithms/certificates/clock_graph.h"
-#include "algorithms/certificates/steady_readings.h"
+#include "algorithms/certificates/stamped_facts.h"
 #include "algorithms/device_time/device_time.h"
 #include "algorithms/ports/exchange.h"
 
@@ -73,13 +72,11 @@ class OnlineCertificates {
   Instant instant(std::size_t clock, Nanoseconds local);
   // earlier <= later.
   void happened(const Instant& earlier, const Instant& later);
-  void message(std::uint32_t from, const std::optional<HostTime>& sent, std::uint32_t to,
-               const std::optional<HostTime>& received);
   Picoseconds later_by(const Ticket& from, const Ticket& to) const;
 
   CertifiedRig rig_;
   ClockGraph graph_;
-  std::vector<SteadyReadings> readings_;  // by host
+  StampedFacts facts_;
   bool is_contradicted_ = false;
 };
 

@@ -2,7 +2,7 @@
 // polls of cameras' clocks, and the messages of its host synchronisation.
 //
 // A message ties two hosts: it was received after it was sent, whatever protocol sent it. A stamp
-// of a system clock is mapped to the host's steady clock, which nobody sets (steady_readings.h).
+// of a system clock is mapped to the host's steady clock, which nobody sets (stamped_facts.h).
 // Messages with a stamp that maps to no instant are left out and counted.
 //
 //   CaptureEvidence evidence(assumptions_of(scenario), StreamKind::kDepth);
@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/certificates/steady_readings.h"
+#include "algorithms/certificates/stamped_facts.h"
 #include "algorithms/device_time/unwrap.h"
 #include "evaluation/certificates/assumptions.h"
 #include "recording/recording.h"
@@ -40,13 +40,6 @@ struct ClockPollEvidence {
   SteadyTime t1{};
 };
 
-struct HostMessage {
-  std::uint32_t from = 0;
-  std::uint32_t to = 0;
-  SteadyTime sent{};      // at the earliest, on the sender's clock
-  SteadyTime received{};  // at the latest, on the receiver's
-};
-
 class CaptureEvidence final : public RecordingSink {
  public:
   // Frames of this stream count.
@@ -65,14 +58,12 @@ class CaptureEvidence final : public RecordingSink {
 
  private:
   void add_exchange(std::uint32_t host, const Exchange& exchange);
-  void add_message(std::uint32_t from, const std::optional<HostTime>& sent, std::uint32_t to,
-                   const std::optional<HostTime>& received);
 
   Assumptions assumptions_;
   StreamKind stream_;
   RigLayout layout_;
   std::vector<DeviceStampUnwrapper> registers_;  // by camera
-  std::vector<SteadyReadings> readings_;         // by host
+  std::optional<StampedFacts> facts_;            // from the start on
   std::vector<FrameEvidence> frames_;
   std::vector<ClockPollEvidence> polls_;
   std::vector<HostMessage> messages_;

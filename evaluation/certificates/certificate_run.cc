@@ -25,7 +25,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 double bound_ms(Picoseconds apart) {
-  return apart >= Picoseconds(ClockGraph::kUnbounded) / 2 ? kUnknown : to_ms(apart);
+  return ClockGraph::is_bounded(apart) ? to_ms(apart) : kUnknown;
 }
 
 // The sets of a scorer, by their cameras and sensor stamps.
@@ -177,8 +177,7 @@ void add_sets(const CertifiedCapture& found, const std::vector<EvidenceSet>& set
     const SetCertificate& set = found.sets[i];
     part.apart_ms.push_back(bound_ms(set.apart));
     part.frames_outside += set.frames_outside;
-    part.frames += static_cast<std::size_t>(std::ranges::count_if(
-        sets[i], [&](std::size_t frame) { return evidence.frames()[frame].truth.has_value(); }));
+    part.frames += set.frames_judged;
     if (sets[i].size() < 2) continue;
     const WeakLink& tie = set.weakest;
     TieSums& sums = part.ties[{tie.kind, tie.first, tie.second}];

@@ -23,6 +23,14 @@ struct Reach {
   std::vector<std::int64_t> to;    // its most instant after the point, at most
 };
 
+// What the truth says of the frames of a set.
+struct TruthMarks {
+  explicit TruthMarks(std::size_t frames) : can_be_outside(frames), is_outside(frames) {}
+
+  std::vector<bool> can_be_outside;
+  std::vector<bool> is_outside;
+};
+
 class Certifier {
  public:
   Certifier(const CaptureEvidence& evidence, const FactOrder& order,
@@ -137,7 +145,7 @@ class Certifier {
     std::vector<Reach> reaches;
     for (const std::size_t frame : frames) reaches.push_back(reach_of(frame, past, joined));
     SetCertificate& found = certified_.sets[set];
-    std::vector<bool> is_outside(frames.size(), false);
+    TruthMarks marks(frames.size());
     bool is_possible = true;
     for (std::size_t a = 0; a < frames.size(); ++a) {
       for (std::size_t b = a + 1; b < frames.size(); ++b) {
@@ -148,11 +156,12 @@ class Certifier {
           is_possible = false;
           continue;
         }
-        judge(set, *pair, is_outside, found);
+        judge(set, *pair, marks, found);
       }
     }
     if (!is_possible) ++certified_.impossible_sets;
-    found.frames_outside = static_cast<std::size_t>(std::ranges::count(is_outside, true));
+    found.frames_judged = static_cast<std::size_t>(std::ranges::count(marks.can_be_outside, true));
+    found.frames_outside = static_cast<std::size_t>(std::ranges::count(marks.is_outside, true));
     find_weakest(frames, past, joined, reaches, found);
     release(frames);
   }
@@ -207,7 +216,7 @@ class Certifier {
                           std::ceil(std::abs(static_cast<double>(bound_ps)) * share * (1 + share)));
   }
 
-  void judge(std::size_t set, const PairInterval& pair, std::vector<bool>& is_outside,
+  void judge(std::size_t set, const PairInterval& pair, TruthMarks& marks,
              SetCertificate& found) const {
     if (visit_) visit_(set, pair);
     const auto& first = evidence_.frames()[sets_[set][pair.first]].truth;
@@ -215,9 +224,13 @@ class Certifier {
     std::optional<Nanoseconds> truth;
     if (first && second) {
       truth = *second - *first;
-      if (*truth < pair.least || *truth > pair.most) {
-        is_outside[pair.first] = is_outside[pair.second] = true;
+      const auto mark = [&](std::vector<bool>& frames) {
+        frames[pair.first] = frames[pair.second] = true;
+      };
+      if (ClockGraph::is_bounded(pair.most) || ClockGraph::is_bounded(-pair.least)) {
+        mark(marks.can_be_outside);
       }
+      if (*truth < pair.least || *truth > pair.most) mark(marks.is_outside);
       truth = std::chrono::abs(*truth);
     }
     const Picoseconds apart = std::max(-pair.least, pair.most);
@@ -281,7 +294,9 @@ CertifiedCapture certify(const CaptureEvidence& evidence, const FactOrder& order
 }
 
 std::optional<PairInterval> narrowed(const PairInterval& interval, const CommonTrigger& trigger) {
-  if (interval.most >= Picoseconds(kFar) || -interval.least >= Picoseconds(kFar)) return interval;
+  if (!ClockGraph::is_bounded(interval.most) || !ClockGraph::is_bounded(-interval.least)) {
+    return interval;
+  }
   const double spread_ms = trigger.spread_ms;
   const double share = trigger.rate_error_ppm * 1e-6;
   const double least_ms = to_ms(interval.least);

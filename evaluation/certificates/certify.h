@@ -64,7 +64,10 @@ struct SetCertificate {
   PairInterval widest{};  // the pair that may be so far apart
   WeakLink weakest{};     // of that pair; without a meaning for a set of one frame
   std::optional<Nanoseconds> truth_apart{};  // of the widest pair; simulated captures only
-  std::size_t frames_outside = 0;  // of a pair whose true difference its interval does not hold
+  // Frames whose true difference to another is known and bounded, so that it can be outside; and
+  // those of a pair whose interval does not hold it.
+  std::size_t frames_judged = 0;
+  std::size_t frames_outside = 0;
 };
 
 struct CertifiedCapture {

@@ -10,8 +10,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr Nanoseconds kRegisterStep{1000};
-
 Nanoseconds count_of(DeviceTime device) { return Nanoseconds(nanoseconds_of(device)); }
 Nanoseconds count_of(SteadyTime steady) { return steady.time_since_epoch(); }
 Picoseconds at_least(Nanoseconds delay) { return -Picoseconds(delay); }
@@ -126,18 +124,17 @@ void FactOrder::add_points(const CaptureEvidence& evidence) {
          at_least(from_ms(assumed.message_ms)), FactKind::kMessage, i);
   }
   const Picoseconds poll_delay = at_least(from_ms(assumed.poll_ms));
-  const Nanoseconds host_read(1);  // a steady clock is read in whole nanoseconds
   for (std::size_t i = 0; i < evidence.polls().size(); ++i) {
     const ClockPollEvidence& poll = evidence.polls()[i];
     const std::size_t camera = hosts_ + poll.camera;
     const std::uint32_t host = evidence.layout().cameras[poll.camera].host;
     const std::uint32_t least = add(camera, count_of(poll.device));
     const std::uint32_t most = add(camera, count_of(poll.device) + kRegisterStep);
-    fact(most, add(host, count_of(poll.t0) - host_read), poll_delay, FactKind::kPollRequest, i);
-    fact(add(host, count_of(poll.t1) + host_read), least, poll_delay, FactKind::kPollReply, i);
+    fact(most, add(host, count_of(poll.t0) - kSteadyStep), poll_delay, FactKind::kPollRequest, i);
+    fact(add(host, count_of(poll.t1) + kSteadyStep), least, poll_delay, FactKind::kPollReply, i);
   }
   const Nanoseconds stamp_error = from_us(assumed.sensor_stamp_us);
-  const Nanoseconds arrival_error = from_ms(assumed.arrival_stamp_ms) + host_read;
+  const Nanoseconds arrival_error = from_ms(assumed.arrival_stamp_ms) + kSteadyStep;
   for (std::size_t i = 0; i < evidence.frames().size(); ++i) {
     const FrameEvidence& frame = evidence.frames()[i];
     const std::size_t camera = hosts_ + frame.camera;

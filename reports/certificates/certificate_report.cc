@@ -161,9 +161,10 @@ std::string truth_text(const CertificateRun& run) {
     outside += row.frames_outside;
   }
   if (frames == 0) return {};
-  if (outside == 0) return fmt::format("it lies within for all {} frames.", frames);
+  if (outside == 0)
+    return fmt::format("it lies within for all {} frames that have a bound.", frames);
   return fmt::format(
-      "it lies outside for {} of {} frames: an assumption is wrong there, and "
+      "it lies outside for {} of {} frames that have a bound: an assumption is wrong there, and "
       "nothing in the recording contradicts it.",
       outside, frames);
 }

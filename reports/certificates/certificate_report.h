@@ -9,7 +9,7 @@
 // "frames", "truth_outside", "impossible_sets", "weakest": [{"tie": "camera" | "hosts", "first",
 // "second", "sets", "width_ms", "age_s", "drift_share"}], "contradicted": [{"seed", "before_ms",
 // "chain": [text], "possible_ppm"}]}]}; what is unknown or does not exist is null, "frames" and
-// "truth_outside" too where no truth is known.
+// "truth_outside" too where no truth is known, or nothing bounds it.
 #pragma once
 
 #include "evaluation/certificates/certificate_run.h"

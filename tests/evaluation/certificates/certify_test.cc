@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -258,6 +259,21 @@ TEST(Certify, TheTruthLiesWithin) {
     EXPECT_EQ(row.frames_outside, 0U) << (changes.empty() ? "" : changes.front());
     EXPECT_TRUE(row.contradicted.empty()) << (changes.empty() ? "" : changes.front());
   }
+}
+
+// A rig whose cameras' clocks nobody read has no bound that the truth could break: no frame counts
+// as one for which it lies within.
+TEST(Certify, WhatHasNoBoundProvesNothing) {
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario("18cam_6host_45fps", {{"/timeline/frames", "4"}});
+  ASSERT_EQ(scenario.cameras.clock_poll.interval_ms, 0);
+  const CertificateOptions options{.pipelines = {"yoon2021_both"}};
+  const CertificateRun run = certify_pipelines(
+      scenario, [&] { return sim::make_simulation(scenario); }, options, nullptr);
+  const CertificateRow& row = run.rows.front();
+  ASSERT_GT(row.apart_ms.size(), 0U);
+  EXPECT_TRUE(std::isinf(row.apart_ms.front()));
+  EXPECT_EQ(row.frames, 0U);
 }
 
 // Quartzes of 200 ppm under an assumption of 50: found, not certified.
