@@ -83,9 +83,9 @@ class CodeDecoder {
   }
 
   bool is_locked() const { return is_locked_; }
-  // That of the newest frame that has one; any frame must have had one.
+  // The index of the newest frame that has one; any frame must have had one.
   std::int64_t newest_index() const { return index_; }
-  // That of the i-th frame that got its index in the last push(), which found the place.
+  // The index of the i-th frame that got its own in the last push(), which found the place.
   std::int64_t found_index(std::size_t i) const { return first_index_ + search_.slot(i); }
   const CodeLock& lock() const { return lock_; }
 

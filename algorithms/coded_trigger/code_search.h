@@ -64,7 +64,7 @@ class CodeSearch {
 
   std::size_t held() const { return points_.size(); }
   std::int64_t newest_at_ns() const { return newest_at_ns_; }
-  // That of a held frame, the oldest first.
+  // The slot of a held frame, the oldest first.
   std::int64_t slot(std::size_t place) const { return points_[place].slot; }
   double newest_residual_us() const { return points_.back().residual_us; }
   const CodeVerdict& verdict() const { return verdict_; }
