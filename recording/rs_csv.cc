@@ -42,10 +42,11 @@ struct CsvPlace {
   }
 };
 
-std::vector<std::string_view> cells_at_commas(std::string_view line,
-                                              std::deque<std::string>& unquoted) {
+// Nothing where a quote does not end.
+std::optional<std::vector<std::string_view>> cells_at_commas(std::string_view line,
+                                                             std::deque<std::string>& unquoted) {
   std::vector<std::string_view> cells;
-  split_row(line, ',', cells, unquoted);
+  if (!split_row(line, ',', cells, unquoted)) return std::nullopt;
   return cells;
 }
 
@@ -200,7 +201,8 @@ bool CsvRecordingReader::File::is_usual(LineReader& lines) const {
     bytes += line->size();
     if (is_preamble(*line)) return true;
     std::deque<std::string> unquoted;
-    if (usual_positions(cells_at_commas(*line, unquoted), {place_.path, lines.line()})) return true;
+    const std::optional<Cells> cells = cells_at_commas(*line, unquoted);
+    if (cells && usual_positions(*cells, {place_.path, lines.line()})) return true;
   }
   return false;
 }
@@ -219,7 +221,10 @@ void CsvRecordingReader::File::read_usual(LineReader& lines) {
 
 void CsvRecordingReader::File::read_usual_line(std::string_view line) {
   unquoted_.clear();
-  const Cells cells = cells_at_commas(line, unquoted_);
+  const std::optional<Cells> whole = cells_at_commas(line, unquoted_);
+  if (!whole && width_ == 0 && preamble_) return;
+  if (!whole) place_.fail("found a quote without its end, allowed: a row on one line");
+  const Cells& cells = *whole;
   if (cells.size() == 1 && cells.front().empty()) return;
   if (width_ == 0 || plain_column_name(cells.front()) == kUsualNames.front()) {
     if (const auto positions = usual_positions(cells, place_)) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <vector>
 
@@ -23,11 +22,9 @@ constexpr ExtraColumn kExtraColumns[] = {{"exposure_us", &FrameColumns::exposure
 // "Depth 0" in the two cells of its type and index.
 std::string stream_cells(const std::string& stream) {
   const std::size_t blank = stream.rfind(' ');
-  if (blank == std::string::npos) return stream + ",0";
-  return stream.substr(0, blank) + ',' + stream.substr(blank + 1);
+  if (blank == std::string::npos) return csv_cell(stream) + ",0";
+  return csv_cell(stream.substr(0, blank)) + ',' + csv_cell(stream.substr(blank + 1));
 }
-
-std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 }  // namespace
 
@@ -50,15 +47,16 @@ std::string rs_csv_text(std::span<const RecordedStream> streams) {
   text += '\n';
   for (const RecordedStream& stream : streams) {
     const std::string begin = stream_cells(stream.stream);
+    const std::string names = ',' + csv_cell(stream.camera) + ',' + csv_cell(stream.host);
     for (std::size_t i = 0; i < stream.frames.size(); ++i) {
       const StampedFrame& frame = stream.frames[i];
       text += begin;
       if (are_counted) text += fmt::format(",{}", frame.counter);
       text += fmt::format(",{},{}", ms_text(frame.sensor), ms_text(frame.arrival));
-      if (have_names) text += fmt::format(",{},{}", stream.camera, stream.host);
+      if (have_names) text += names;
       for (const ExtraColumn& extra : extras) {
         const std::vector<double>& values = stream.columns.*extra.values;
-        text += ',' + (i < values.size() ? cell(values[i]) : std::string());
+        text += ',' + (i < values.size() ? csv_cell(values[i]) : std::string());
       }
       text += '\n';
     }

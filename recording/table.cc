@@ -218,7 +218,7 @@ void TableReader::find_dialect() {
   std::vector<std::string_view> cells;
   for (const std::string_view row : rows) {
     cells.clear();
-    split_row(row, dialect_.separator, cells, unquoted_);
+    if (!split_row(row, dialect_.separator, cells, unquoted_)) continue;
     for (const std::string_view cell : cells) {
       if (is_decimal_comma(cell)) ++commas;
       if (cell.find('.') != std::string_view::npos && is_number_cell(cell)) ++points;
@@ -245,8 +245,10 @@ void TableReader::find_heading() {
   // A line above a list of stamps is its heading only if it says so.
   if (cells.size() < 2 && !comments_.back().starts_with("timestamp")) return;
   std::vector<std::string_view> names;
-  split_row(comments_.back(), dialect_.separator, names, unquoted_);
-  if (names.size() == cells.size()) heading_.assign(names.begin(), names.end());
+  if (split_row(comments_.back(), dialect_.separator, names, unquoted_) &&
+      names.size() == cells.size()) {
+    heading_.assign(names.begin(), names.end());
+  }
 }
 
 std::vector<std::string> TableReader::cells_of(const Kept& row) const {

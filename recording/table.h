@@ -42,8 +42,9 @@ bool is_value_cell(std::string_view cell, bool decimal_comma = false);
 
 // Cells without the blanks and quotes around them. `unquoted` holds those that had quotes inside.
 // False if a quote does not end.
-bool split_row(std::string_view line, char separator, std::vector<std::string_view>& cells,
-               std::deque<std::string>& unquoted);
+[[nodiscard]] bool split_row(std::string_view line, char separator,
+                             std::vector<std::string_view>& cells,
+                             std::deque<std::string>& unquoted);
 
 class TableReader {
  public:

@@ -115,6 +115,16 @@ std::string_view take_cell(std::string_view& line) {
   return cell.substr(0, cell.find_last_not_of(kBlank) + 1);
 }
 
+std::string csv_cell(std::string_view unchecked) {
+  std::string text = printable_name(unchecked);
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
 void append_escaped(std::string& line, std::string_view text) {
   for (const char c : text) {
     switch (c) {

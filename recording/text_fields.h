@@ -12,6 +12,8 @@
 //   std::string_view theirs = "1000, 00.0396100, -0.0000025";
 //   const std::string_view count = take_cell(theirs);   // "1000"
 //
+//   csv_cell("a,b");   // "\"a,b\""
+//
 //   parse_ms("12.3456789", 1000);   // 12'345'679 ns: digits beyond the sixth are rounded
 #pragma once
 
@@ -50,6 +52,11 @@ std::string printable_json(std::string_view json);
 // The first cell of a line of commas, without the blanks around it; it is taken off the line. Empty
 // at the end of the line.
 std::string_view take_cell(std::string_view& line);
+
+// A cell of a CSV, quoted where necessary (RFC 4180), with printable_name() of it; what is not
+// finite is empty.
+std::string csv_cell(std::string_view text);
+std::string csv_cell(double value);
 
 template <std::integral Number>
 void append_number(std::string& line, Number value) {

@@ -9,6 +9,7 @@
 
 #include "evaluation/answer/standing.h"
 #include "evaluation/clock_run/clock_score.h"
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/results/answer_fields.h"
 #include "reports/results/csv.h"
@@ -17,7 +18,6 @@
 #include "reports/results/metric_columns.h"
 #include "reports/results/results_document.h"
 #include "reports/stability/stability_report.h"
-#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"

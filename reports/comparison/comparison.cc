@@ -7,11 +7,11 @@
 
 #include "evaluation/scoring/program_failures.h"
 #include "recording/collected.h"
+#include "recording/text_fields.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/text/answer_json.h"
-#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 

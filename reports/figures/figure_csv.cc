@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
+#include "recording/text_fields.h"
 #include "reports/figures/figure.h"
 #include "reports/results/csv.h"
-#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 namespace {

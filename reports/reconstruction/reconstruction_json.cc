@@ -7,11 +7,11 @@
 
 #include "algorithms/ports/stage.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/results/json.h"
 #include "reports/results/results_document.h"
-#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {

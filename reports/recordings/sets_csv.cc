@@ -10,7 +10,6 @@
 #include "bags/frame_track.h"
 #include "evaluation/frames/camera_statistics.h"
 #include "recording/text_fields.h"
-#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 namespace {

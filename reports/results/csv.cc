@@ -10,9 +10,9 @@
 #include "algorithms/ports/stage.h"
 #include "evaluation/answer/standing.h"
 #include "evaluation/scoring/rows.h"
+#include "recording/text_fields.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/results_document.h"
-#include "reports/text/escaped_text.h"
 
 namespace simbench::reports {
 namespace {

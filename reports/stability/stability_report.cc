@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "recording/counted.h"
+#include "recording/text_fields.h"
 #include "reports/stability/verdict_text.h"
 #include "reports/text/answer_json.h"
-#include "reports/text/escaped_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 

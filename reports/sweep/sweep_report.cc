@@ -13,6 +13,7 @@
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/number_in.h"
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure_parts.h"
@@ -20,7 +21,6 @@
 #include "reports/results/json.h"
 #include "reports/results/metric_columns.h"
 #include "reports/sweep/sweep_parts.h"
-#include "reports/text/escaped_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "algorithms/ports/assert.h"
 #include "recording/text_fields.h"
@@ -87,16 +86,6 @@ std::string latex_escaped(std::string_view text) {
   }
   return escaped;
 }
-
-std::string csv_cell(std::string_view unchecked) {
-  std::string text = printable_name(unchecked);
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
-std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string script_safe(std::string_view json) {
   std::string out;

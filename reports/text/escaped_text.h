@@ -1,10 +1,9 @@
 // Unchecked text (names, paths, messages) as each format writes it. What a reader would obey
 // instead of show stands as \xHH (printable_name() of recording/text_fields.h) in all but LaTeX,
-// whose documents are escaped as a whole (reports/text/block.h).
+// whose documents are escaped as a whole (reports/text/block.h). Cells of a CSV: csv_cell() there.
 //
 //   html_escaped("a < b & \"c\"")   "a &lt; b &amp; &quot;c&quot;", for content and attributes
 //   latex_escaped("50 %_a")         "50 \%\_a"
-//   csv_cell("a,b")                 "\"a,b\""
 #pragma once
 
 #include <string>
@@ -20,10 +19,6 @@ std::string html_escaped(std::string_view text);
 // Text with the special characters of LaTeX escaped. Every other character stays, in UTF-8, which
 // LaTeX reads since 2018.
 std::string latex_escaped(std::string_view text);
-
-// A cell of a CSV, quoted where necessary (RFC 4180); what is not finite is empty.
-std::string csv_cell(std::string_view text);
-std::string csv_cell(double value);
 
 // JSON in which no HTML parser finds the end of a script, and no reader of the page's source obeys
 // anything: '<' and such characters stand in strings only, where an escape means the same.

@@ -144,8 +144,16 @@ TEST(RsCsv, NamesTheDamagedLine) {
   EXPECT_THAT(refusal(good + ",0,2,43,133\n"), HasSubstr("empty cell"));
   EXPECT_THAT(refusal(good + "Stream Type,Index\n"), HasSubstr(":3: found 'Stream Type,Index'"));
   EXPECT_THAT(refusal(good + "Depth,0,1.5,43,133\n"), HasSubstr("allowed: a whole number"));
+  EXPECT_THAT(refusal(good + "\"Depth,0,2,43,133\n"),
+              HasSubstr(":3: found a quote without its end, allowed: a row on one line"));
+  EXPECT_THAT(refusal(good + "Depth,0,2,43,\"133\n"), HasSubstr(":3: found a quote without"));
   const std::string endless(100'000, 'x');
   EXPECT_LT(refusal(good + "Depth,0,2," + endless + ",1\n").size(), 200U);
+}
+
+TEST(RsCsv, SkipsAQuoteWithoutItsEndBeforeTheHeader) {
+  const std::string text = "Configuration:\n\"Depth\n" + kHeader + "Depth,0,1,10,100\n";
+  EXPECT_EQ(read(text).front().frames.size(), 1U);
 }
 
 TEST(RsCsv, RefusesDecimalCommas) {

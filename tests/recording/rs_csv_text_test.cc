@@ -72,5 +72,14 @@ TEST(RsCsvText, ANamelessStreamHasNoNames) {
             "Depth,0,10,1000.000001,1700000000000.000017\n");
 }
 
+TEST(RsCsvText, NamesWithCommasAndQuotesAreReadAgain) {
+  const std::vector<RecordedStream> streams = {stream_of("left, upper", "the \"old\" one", 2)};
+  const std::vector<RecordedStream> again = read_again(rs_csv_text(streams));
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].camera, "left, upper");
+  EXPECT_EQ(again[0].host, "the \"old\" one");
+  EXPECT_EQ(again[0].frames.size(), 2U);
+}
+
 }  // namespace
 }  // namespace simbench

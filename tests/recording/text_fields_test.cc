@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -62,6 +63,15 @@ TEST(PrintableJson, MeansTheSame) {
   const std::string text = printable_json(data.dump(2));
   EXPECT_EQ(nlohmann::json::parse(text), data);
   EXPECT_EQ(printable_lines(text), text);
+}
+
+TEST(CsvCell, IsQuotedWhereItMustBe) {
+  EXPECT_EQ(csv_cell("plain"), "plain");
+  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_cell("say \"hi\""), "\"say \"\"hi\"\"\"");
+  EXPECT_EQ(csv_cell("a\nb\x1b[2J\u202e"), "a\\x0ab\\x1b[2J\\xe2\\x80\\xae");
+  EXPECT_EQ(csv_cell(NAN), "");
+  EXPECT_EQ(csv_cell(0.1 + 0.2), "0.30000000000000004");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace simbench::reports {
@@ -55,15 +54,6 @@ TEST(HtmlText, DataOfAScriptMeanTheSame) {
   const std::string safe = script_safe(data.dump());
   EXPECT_EQ(safe, R"({"name":"a\u202eb\u0085c\u001b\u007f"})");
   EXPECT_EQ(nlohmann::json::parse(safe), data);
-}
-
-TEST(CsvCell, IsQuotedWhereItMustBe) {
-  EXPECT_EQ(csv_cell("plain"), "plain");
-  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
-  EXPECT_EQ(csv_cell("say \"hi\""), "\"say \"\"hi\"\"\"");
-  EXPECT_EQ(csv_cell("a\nb\x1b[2J\u202e"), "a\\x0ab\\x1b[2J\\xe2\\x80\\xae");
-  EXPECT_EQ(csv_cell(NAN), "");
-  EXPECT_EQ(csv_cell(0.1 + 0.2), "0.30000000000000004");
 }
 
 }  // namespace
