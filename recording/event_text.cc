@@ -1,5 +1,7 @@
 #include "recording/event_text.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <chrono>
 #include <concepts>
@@ -77,6 +79,7 @@ void members(const auto& form, Any<ExchangeEvent> auto& event) {
   form("t2_ns", event.exchange.t2);
   form("t3_ns", event.exchange.t3);
   form("t4_ns", event.exchange.t4);
+  form.mark("estimated", event.exchange.is_estimated);
 }
 
 void members(const auto& form, Any<SyncOutcome> auto& outcome) {
@@ -194,6 +197,9 @@ struct Writer {
     append_escaped(line, text);
   }
   void inner(const char* name, const std::string& text) const { (*this)(name, text); }
+  void mark(const char* name, bool is_so) const {
+    if (is_so) (line += ',') += name;
+  }
   void operator()(const char* /*name*/, Nanoseconds interval) const {
     append_field(line, interval.count());
   }
@@ -218,6 +224,12 @@ struct Reader {
   // The last member; inner(): others.
   void operator()(const char* name, std::string& text) const { text = fields.text(name); }
   void inner(const char* name, std::string& text) const { text = fields.inner_text(name); }
+  // The last member, which is its own name where it is so, and else not there.
+  void mark(const char* name, bool& is_so) const {
+    is_so = !fields.at_end();
+    if (is_so && fields.next(name) != name)
+      fields.fail(name, fmt::format("\"{}\" or nothing", name));
+  }
   void operator()(const char* name, Nanoseconds& interval) const {
     interval = Nanoseconds(fields.whole<std::int64_t>(name));
   }

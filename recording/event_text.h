@@ -12,7 +12,7 @@
 //   pulse,pulse,at_ns,error_ns;error_ns;...
 //   adjustment,host,at_steady_ns,before_ns,after_ns,rate_ppb
 //   poll,camera,device_us,t0_ns,t1_ns,t0_steady_ns,t1_steady_ns
-//   exchange,host,peer,t1_ns,t2_ns,t3_ns,t4_ns
+//   exchange,host,peer,t1_ns,t2_ns,t3_ns,t4_ns[,estimated]
 //   outcome,slave,synchronised,passes,message
 //   alignment,camera,aligned,controls,message
 //   led,camera,sensor_us,led_start_ns,led_end_ns

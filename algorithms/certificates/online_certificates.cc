@@ -14,7 +14,9 @@ std::vector<RateBound> rates_of(const CertifiedRig& rig) {
 }  // namespace
 
 OnlineCertificates::OnlineCertificates(const CertifiedRig& rig)
-    : rig_(rig), graph_(rates_of(rig)), facts_(rig.hosts, rig.host_stamp_error) {}
+    : rig_(rig),
+      graph_(rates_of(rig)),
+      facts_(rig.hosts, rig.host_stamp_error, rig.estimate_error) {}
 
 void OnlineCertificates::on_adjustment(const ClockAdjustment& adjustment) {
   facts_.add(adjustment);

@@ -21,6 +21,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,10 @@ struct CertifiedRig {
   std::uint32_t hosts = 0;
   std::vector<std::uint32_t> host_of_camera{};
   double host_rate_ppm = 50;
-  double camera_rate_ppm = 50;
-  Nanoseconds host_stamp_error{101};       // of a stamp of a host's system clock, either way
+  double camera_rate_ppm = 100;
+  Nanoseconds host_stamp_error{101};  // of a stamp of a host's system clock, either way
+  // And of one that a protocol estimated (Exchange::is_estimated); empty: these do not count.
+  std::optional<Nanoseconds> estimate_error{};
   Nanoseconds sensor_stamp_error{17'000};  // of a sensor stamp from the middle of its exposure
 };
 

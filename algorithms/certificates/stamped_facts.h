@@ -7,7 +7,7 @@
 // and to the last at which it can have been received. Between t1 and t4 the peer may have told but
 // one of its two stamps, which then stands for both.
 //
-//   StampedFacts facts(2, Nanoseconds(101));
+//   StampedFacts facts(2, Nanoseconds(101), std::nullopt);
 //   facts.add(adjustment);   // in order
 //   for (const auto& message : facts.messages_of(1, Exchange()).usable) use(message);
 //
@@ -41,22 +41,26 @@ struct HostMessage {
 struct ExchangeMessages {
   std::array<std::optional<HostMessage>, 2> usable{};  // there, and back
   std::size_t unusable = 0;                            // with a stamp that maps to no instant
+  bool is_left_out = false;                            // the stamps are estimates
 };
 
 class StampedFacts {
  public:
-  // Stamps are within `stamp_error` of what their clocks read.
-  StampedFacts(std::size_t hosts, Nanoseconds stamp_error);
+  // Stamps are within `stamp_error` of what their clocks read, those that are estimates
+  // (Exchange::is_estimated) within `estimate_error` more; without it they prove nothing.
+  StampedFacts(std::size_t hosts, Nanoseconds stamp_error,
+               std::optional<Nanoseconds> estimate_error);
 
   void add(const ClockAdjustment& adjustment);
   // `host` has reported the exchange.
   ExchangeMessages messages_of(std::uint32_t host, const Exchange& exchange) const;
 
  private:
-  std::optional<SteadyRange> when(std::uint32_t host, HostTime stamp) const;
+  std::optional<SteadyRange> when(std::uint32_t host, HostTime stamp, Nanoseconds error) const;
 
   std::vector<SteadyReadings> readings_;  // by host
   Nanoseconds stamp_error_;
+  std::optional<Nanoseconds> estimate_error_;
 };
 
 }  // namespace simbench

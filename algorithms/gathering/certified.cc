@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -93,9 +94,15 @@ const char* const kDataSheets = "data sheets of quartz oscillators; docs/certifi
 
 struct CertifiedSettings {
   double host_rate_ppm = 50;
-  double camera_rate_ppm = 50;
+  double camera_rate_ppm = 100;
   double host_stamp_error_us = 1;
+  double estimated_stamp_error_us = 0;
   double sensor_stamp_error_us = 20;
+
+  std::optional<Nanoseconds> estimate_error() const {
+    if (estimated_stamp_error_us == 0) return std::nullopt;
+    return from_us(estimated_stamp_error_us);
+  }
 
   void bind(ParameterBinder& parameters) {
     parameters.number("host_rate_ppm", host_rate_ppm, 0, 1e5,
@@ -104,6 +111,10 @@ struct CertifiedSettings {
                       "rate error of a camera's clock, at most", kDataSheets);
     parameters.number("host_stamp_error_us", host_stamp_error_us, 0, 1e6,
                       "error of a host's stamp, at most, either way", "assumption");
+    parameters.number("estimated_stamp_error_us", estimated_stamp_error_us, 0, 1e6,
+                      "that of a stamp which the host_sync estimated, as two_way and cards do; 0: "
+                      "such exchanges prove nothing",
+                      "assumption");
     parameters.number("sensor_stamp_error_us", sensor_stamp_error_us, 0, 1e6,
                       "distance of a sensor stamp from the middle of its exposure, at most",
                       "assumption");
@@ -132,6 +143,7 @@ std::vector<GatheringEntry> gathering_certified() {
                     .host_rate_ppm = settings.host_rate_ppm,
                     .camera_rate_ppm = settings.camera_rate_ppm,
                     .host_stamp_error = from_us(settings.host_stamp_error_us),
+                    .estimate_error = settings.estimate_error(),
                     .sensor_stamp_error = from_us(settings.sensor_stamp_error_us)});
       })};
 }

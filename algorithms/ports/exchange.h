@@ -20,10 +20,14 @@ using PeerId = std::uint32_t;  // a host of the rig, by index; 0 is the master
 
 struct Exchange {
   PeerId peer = 0;
-  std::optional<HostTime> t1;
-  std::optional<HostTime> t2;
-  std::optional<HostTime> t3;
-  std::optional<HostTime> t4;
+  std::optional<HostTime> t1{};
+  std::optional<HostTime> t2{};
+  std::optional<HostTime> t3{};
+  std::optional<HostTime> t4{};
+  // A stamp among them is no reading of the system clock that encloses the message's way: a card's
+  // that was translated, a reading that was predicted from others, a departure that was read after
+  // the send call. Good for estimates; a proof needs to know how far it may be off.
+  bool is_estimated = false;
 };
 
 // What a slave measured in one pass of a session of Algorithms 1 and 2 (host_sync/yoon2021/), and

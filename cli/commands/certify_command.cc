@@ -47,7 +47,7 @@ struct CertifyOptions {
   std::string within;
   std::optional<double> required_percent;
   std::optional<double> host_rate_ppm, camera_rate_ppm, message_ms, poll_ms, arrival_ms,
-      host_stamp_ms, sensor_stamp_us, trigger_hz, observed_margin_ppm;
+      host_stamp_ms, estimated_stamp_ms, sensor_stamp_us, trigger_hz, observed_margin_ppm;
   bool common_trigger = false;
   double trigger_spread_us = 100;
   bool causal = false;
@@ -67,6 +67,7 @@ void set_assumptions(const CertifyOptions& options, const scenarios::Scenario& s
   set(options.arrival_ms, assumed.arrival_ms);
   set(options.host_stamp_ms, assumed.host_stamp_ms);
   set(options.sensor_stamp_us, assumed.sensor_stamp_us);
+  assumed.estimated_stamp_ms = options.estimated_stamp_ms;
   assumed.observed_margin_ppm = options.observed_margin_ppm;
   if (!options.common_trigger) return;
   const double rate_hz = options.trigger_hz.value_or(scenario.trigger.pulse_rate_hz());
@@ -138,10 +139,12 @@ int run_certify(const CertifyOptions& options) {
 
 void add_assumption_options(Command& command, CertifyOptions& options) {
   constexpr double kMostPpm = 1e5, kMostMs = 1e5;
-  command.number("--host-rate-ppm", "PPM", options.host_rate_ppm, 0, kMostPpm,
-                 "Assume that each host's oscillator is within +-PPM of true time. Default: 50");
+  command.number(
+      "--host-rate-ppm", "PPM", options.host_rate_ppm, 0, kMostPpm,
+      "Assume that each host's oscillator is within +-PPM of true time. Default: 50, or what\n"
+      "the scenario's law makes likely, if that is more");
   command.number("--camera-rate-ppm", "PPM", options.camera_rate_ppm, 0, kMostPpm,
-                 "The same of each camera's clock. Default: 50");
+                 "The same of each camera's clock");
   command.number(
       "--observed-rates-ppm", "MARGIN", options.observed_margin_ppm, 0, kMostPpm,
       "Assume in place of both that rates against host 0 are within +-MARGIN of what the\n"
@@ -154,6 +157,9 @@ void add_assumption_options(Command& command, CertifyOptions& options) {
                  "Least time from the end of an exposure until its frame arrives. Default: 0");
   command.number("--host-stamp-ms", "MS", options.host_stamp_ms, 0, kMostMs,
                  "Largest error of a host's stamp. Default: the scenario's granularity");
+  command.number("--estimated-stamp-ms", "MS", options.estimated_stamp_ms, 0, kMostMs,
+                 "Largest error of a stamp that a host_sync estimated (two_way, cards, PTP's\n"
+                 "program stamps). Default: exchanges with such stamps prove nothing");
   command.number("--sensor-stamp-us", "US", options.sensor_stamp_us, 0, 1e6,
                  "Largest distance of a sensor stamp from the middle of its exposure. Default: 1\n"
                  "and 8 times the scenario's jitter");

@@ -2,9 +2,10 @@
 // the certificate may be wrong too, so they are printed with it.
 //
 // In a simulated world a draw from a normal law has no bound: stamps are taken to be within
-// kSigmas of their jitter, and rates within what is stated, which is a data sheet's figure.
+// kSigmas of their jitter, and rates, of which a clock has one, within kRateSigmas of theirs and
+// what temperature and wander add, or kDataSheet_ppm if that is more.
 //
-//   Assumptions assumed = assumptions_of(scenario);   // its granularities, jitters; +-50 ppm
+//   Assumptions assumed = assumptions_of(scenario);   // its granularities, jitters and rates
 //   assumed.host_rate_ppm = 20;                       // these hosts have better quartzes
 //   for (const AssumptionLine& line : described(assumed)) print(line.name, line.value);
 //
@@ -30,18 +31,23 @@ struct CommonTrigger {
 
 struct Assumptions {
   static constexpr double kSigmas = 8;
+  static constexpr double kRateSigmas = 5;
+  static constexpr double kDataSheet_ppm = 50;
 
-  double host_rate_ppm = 50;    // of each host's oscillator, against true time
-  double camera_rate_ppm = 50;  // of each camera's
+  double host_rate_ppm = kDataSheet_ppm;    // of each host's oscillator, against true time
+  double camera_rate_ppm = kDataSheet_ppm;  // of each camera's
   // The clocks' rates against host 0's are within this of what the recording shows
   // (observed_rates.h), in place of the two above where it shows them.
   std::optional<double> observed_margin_ppm{};
-  double message_ms = 0;           // least delay of a message between hosts
-  double poll_ms = 0;              // of either way of a poll of a camera's clock
-  double arrival_ms = 0;           // from the end of an exposure until its frame has arrived
-  double host_stamp_ms = 1e-6;     // a host's stamp is so far from what its clock read at most
-  double arrival_stamp_ms = 1e-6;  // and below it, that of an arrival
-  double sensor_stamp_us = 1;      // and that of a frame from the middle of its exposure
+  double message_ms = 0;        // least delay of a message between hosts
+  double poll_ms = 0;           // of either way of a poll of a camera's clock
+  double arrival_ms = 0;        // from the end of an exposure until its frame has arrived
+  double host_stamp_ms = 1e-6;  // a host's stamp is so far from what its clock read at most
+  // And that of a stamp that is an estimate (Exchange::is_estimated); empty: such exchanges do not
+  // count.
+  std::optional<double> estimated_stamp_ms{};
+  double arrival_stamp_ms = 1e-6;          // and below it, that of an arrival
+  double sensor_stamp_us = 1;              // and that of a frame from the middle of its exposure
   std::optional<CommonTrigger> trigger{};  // empty: nothing is known of when cameras expose
 };
 

@@ -10,7 +10,9 @@ CaptureEvidence::CaptureEvidence(const Assumptions& assumptions, StreamKind stre
 void CaptureEvidence::on_start(const RigLayout& layout) {
   layout_ = layout;
   registers_.assign(layout.cameras.size(), {});
-  facts_.emplace(layout.hosts, from_ms(assumptions_.host_stamp_ms));
+  std::optional<Nanoseconds> estimate_error;
+  if (assumptions_.estimated_stamp_ms) estimate_error = from_ms(*assumptions_.estimated_stamp_ms);
+  facts_.emplace(layout.hosts, from_ms(assumptions_.host_stamp_ms), estimate_error);
 }
 
 void CaptureEvidence::on_frames(std::span<const FrameRecord> frames,
@@ -43,6 +45,7 @@ void CaptureEvidence::on_event(const RecordingEvent& event) {
 void CaptureEvidence::add_exchange(std::uint32_t host, const Exchange& exchange) {
   const ExchangeMessages found = facts_->messages_of(host, exchange);
   unusable_messages_ += found.unusable;
+  if (found.is_left_out) ++estimated_exchanges_;
   for (const std::optional<HostMessage>& message : found.usable) {
     if (message) messages_.push_back(*message);
   }

@@ -55,6 +55,8 @@ class CaptureEvidence final : public RecordingSink {
   std::span<const ClockPollEvidence> polls() const { return polls_; }
   std::span<const HostMessage> messages() const { return messages_; }
   std::size_t unusable_messages() const { return unusable_messages_; }
+  // Exchanges that are left out since nothing says how far their stamps may be off.
+  std::size_t estimated_exchanges() const { return estimated_exchanges_; }
 
  private:
   void add_exchange(std::uint32_t host, const Exchange& exchange);
@@ -68,6 +70,7 @@ class CaptureEvidence final : public RecordingSink {
   std::vector<ClockPollEvidence> polls_;
   std::vector<HostMessage> messages_;
   std::size_t unusable_messages_ = 0;
+  std::size_t estimated_exchanges_ = 0;
 };
 
 }  // namespace simbench::evaluation

@@ -165,7 +165,7 @@ struct CapturePart {
   std::vector<double> apart_ms{};
   std::size_t impossible_sets = 0;
   std::size_t frames = 0, frames_outside = 0;
-  std::size_t messages = 0, unusable_messages = 0, polls = 0;
+  std::size_t messages = 0, unusable_messages = 0, estimated_exchanges = 0, polls = 0;
   std::map<TieKey, TieSums> ties{};
 };
 
@@ -213,6 +213,7 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
   }
   part.messages = evidence.messages().size();
   part.unusable_messages = evidence.unusable_messages();
+  part.estimated_exchanges = evidence.estimated_exchanges();
   part.polls = evidence.polls().size();
   const std::vector<EvidenceSet> sets = frames_of(collected, evidence);
   const FactOrder order(evidence);
@@ -262,6 +263,7 @@ CertificateRow row_of(const std::string& pipeline, std::span<CapturePart> parts,
     row.frames_outside += part.frames_outside;
     row.messages += part.messages;
     row.unusable_messages += part.unusable_messages;
+    row.estimated_exchanges += part.estimated_exchanges;
     row.polls += part.polls;
     for (const auto& [key, sum] : part.ties) {
       TieSums& all = ties[key];

@@ -71,7 +71,7 @@ struct CertificateRow {
   std::size_t impossible_sets = 0;  // that no pulses of a common trigger explain
   std::size_t frames = 0;           // of the sets, whose bounds the truth could break
   std::size_t frames_outside = 0;
-  std::size_t messages = 0, unusable_messages = 0, polls = 0;
+  std::size_t messages = 0, unusable_messages = 0, estimated_exchanges = 0, polls = 0;
   std::vector<WeakTie> weakest{};  // the most frequent first
 
   // Quantile p of the sets' bounds; NaN without sets.

@@ -72,6 +72,7 @@ def certify(
     poll_ms: Optional[float] = None,
     arrival_ms: Optional[float] = None,
     host_stamp_ms: Optional[float] = None,
+    estimated_stamp_ms: Optional[float] = None,
     sensor_stamp_us: Optional[float] = None,
     common_trigger: bool = False,
     trigger_hz: Optional[float] = None,
@@ -89,10 +90,12 @@ def certify(
     pipelines: of it; None: all.
     within: a time with its unit, "500us", for which shares of sets are counted; require: the percent
         of each pipeline's sets that must be within it, Certificates.passed.
-    host_rate_ppm, camera_rate_ppm: bounds of the clocks' rate errors, 50; observed_rates_ppm: a
-        margin about the rates that the recording shows, in place of both.
+    host_rate_ppm, camera_rate_ppm: bounds of the clocks' rate errors; None: 50, or more where the
+        scenario's law asks for it; observed_rates_ppm: a margin about the rates that the recording
+        shows, in place of both.
     message_ms, poll_ms, arrival_ms: least delays, 0. host_stamp_ms, sensor_stamp_us: largest errors
-        of stamps; None: by the scenario.
+        of stamps; None: by the scenario. estimated_stamp_ms: that of stamps which a host_sync
+        estimated; None: exchanges with such stamps prove nothing.
     common_trigger: pulses of one trigger expose all frames; trigger_hz: its rate, else the
         scenario's; trigger_spread_us: of the exposures of one pulse, 100.
     causal: use only what came before a set's last exposure.
@@ -103,7 +106,8 @@ def certify(
         pipelines=joined("pipelines", pipelines), within=within, require=require,
         host_rate_ppm=host_rate_ppm, camera_rate_ppm=camera_rate_ppm,
         observed_rates_ppm=observed_rates_ppm, message_ms=message_ms, poll_ms=poll_ms,
-        arrival_ms=arrival_ms, host_stamp_ms=host_stamp_ms, sensor_stamp_us=sensor_stamp_us,
+        arrival_ms=arrival_ms, host_stamp_ms=host_stamp_ms,
+        estimated_stamp_ms=estimated_stamp_ms, sensor_stamp_us=sensor_stamp_us,
         common_trigger=bool(common_trigger), trigger_hz=trigger_hz,
         trigger_spread_us=trigger_spread_us, causal=bool(causal), set=sets_of(set),
         seeds=_whole("seeds", seeds, 1, 1_000_000), first_seed=first_seed,

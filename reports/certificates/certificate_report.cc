@@ -31,8 +31,12 @@ std::string tie_name(const WeakTie& tie) {
 }
 
 // What a tie is so wide for, and what would help.
-std::string cure_text(const WeakTie& tie) {
+std::string cure_text(const CertificateRow& row, const WeakTie& tie) {
   const bool is_camera = tie.kind == LinkKind::kCamera;
+  if (!is_camera && std::isinf(tie.width_ms) && row.estimated_exchanges > 0) {
+    return "stamps that a host_sync estimated prove nothing: state --estimated-stamp-ms, or use a "
+           "host_sync with the kernel's stamps";
+  }
   if (std::isinf(tie.width_ms)) {
     return is_camera ? "nothing bounds it from both sides: record polls of the camera's clock"
                      : "no messages went both ways: record a host_sync that exchanges them";
@@ -43,7 +47,7 @@ std::string cure_text(const WeakTie& tie) {
   }
   return fmt::format("its quickest {} count: {}", is_camera ? "polls" : "messages",
                      is_camera ? "poll over a quicker way, or state a least delay"
-                               : "stamp in the kernel or the card, or state a least delay");
+                               : "stamp in the kernel, or state a least delay");
 }
 
 std::string tie_text(const WeakTie& tie) {
@@ -90,7 +94,7 @@ Block ties_block(const CertificateRun& run) {
     for (std::size_t i = 0; i < std::min(kShownTies, row.weakest.size()); ++i) {
       const WeakTie& tie = row.weakest[i];
       block.items.push_back(fmt::format("{}: {}, in {} of {} sets; {}", row.pipeline, tie_text(tie),
-                                        tie.sets, row.apart_ms.size(), cure_text(tie)));
+                                        tie.sets, row.apart_ms.size(), cure_text(row, tie)));
     }
   }
   return block;
@@ -118,11 +122,19 @@ std::optional<Block> contradictions_block(const CertificateRun& run) {
 }
 
 std::optional<Block> problems_block(const CertificateRun& run) {
-  Block block{.heading = "Without certificates", .is_warning = true};
+  Block block{.heading = "Left out", .is_warning = true};
   for (const CertificateRow& row : run.rows) {
     if (!row.problem.empty()) {
       block.items.push_back(fmt::format("{}: {}", row.pipeline, row.problem));
-    } else if (row.impossible_sets > 0) {
+      continue;
+    }
+    if (row.estimated_exchanges > 0) {
+      block.items.push_back(fmt::format(
+          "{}: {} with stamps that its host_sync estimated; --estimated-stamp-ms states their "
+          "error and lets them count",
+          row.pipeline, counted(static_cast<std::uint64_t>(row.estimated_exchanges), "exchange")));
+    }
+    if (row.impossible_sets > 0) {
       block.items.push_back(
           fmt::format("{}: no pulses of one trigger explain {}", row.pipeline,
                       counted(static_cast<std::uint64_t>(row.impossible_sets), "set")));
@@ -202,6 +214,7 @@ Json certified_row_json(const CertificateRow& row) {
                {"within_share", finite_json(row.share_within())},
                {"messages", row.messages},
                {"unusable_messages", row.unusable_messages},
+               {"estimated_exchanges", row.estimated_exchanges},
                {"polls", row.polls},
                {"frames", row.frames == 0 ? Json(nullptr) : Json(row.frames)},
                {"truth_outside", row.frames == 0 ? Json(nullptr) : Json(row.frames_outside)},
@@ -234,7 +247,7 @@ AnswerText certificate_answer(const CertificateRun& run) {
         "apart, whatever the delays were.",
         best->pipeline, time_text(best->certified_ms(0.95)));
     const WeakTie& tie = best->weakest.front();
-    answer.add("Weakest", fmt::format("{}; {}.", tie_text(tie), cure_text(tie)));
+    answer.add("Weakest", fmt::format("{}; {}.", tie_text(tie), cure_text(*best, tie)));
   }
   answer.add("Truth", truth_text(run));
   answer.add("Contradictions", contradicted_text(run));

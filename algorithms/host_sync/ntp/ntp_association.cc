@@ -186,6 +186,7 @@ NtpAssociation::NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std:
 
 Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout) {
   NtpMeasurement measurement;
+  measurement.is_translated = stamps_ == NtpStamps::kCard;
   measurement.t1 = co_await host_.clock().now();
   NtpPacket request;
   request.version = version_;

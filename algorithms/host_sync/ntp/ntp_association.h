@@ -97,12 +97,13 @@ struct NtpMeasurement {
   SteadyTime received{};        // when t4 was taken
   bool is_interleaved = false;  // t3 is that of the reply before
   bool is_stamped = false;      // t1 is the kernel's or the card's
+  bool is_translated = false;   // the stamps are a card's, put on the system clock
   double root_delay_s = 0;
   double root_dispersion_s = 0;
 
   double offset_s() const;  // server minus client
   double delay_s() const;   // round trip without the server's part; negative if a clock stepped
-  Exchange exchange(PeerId server) const { return {server, t1, t2, t3, t4}; }
+  Exchange exchange(PeerId server) const { return {server, t1, t2, t3, t4, is_translated}; }
 };
 
 // A broadcast has t3 and t4 only.
@@ -112,7 +113,7 @@ struct NtpBroadcast {
   SteadyTime received{};
 
   double offset_s() const;  // server minus client, less the delay of the packet
-  Exchange exchange(PeerId server) const { return {server, {}, {}, t3, t4}; }
+  Exchange exchange(PeerId server) const { return {.peer = server, .t3 = t3, .t4 = t4}; }
 };
 
 // The client's side. It ignores late, duplicated and foreign packets, as RFC 5905 section 8

@@ -205,12 +205,12 @@ void PtpSlave::take_delay_response(const PtpMessage& response) {
 }
 
 void PtpSlave::take_peer_delay() {
-  const Nanoseconds correction =
-      correction_of(peer_response_->message) + correction_of(*peer_follow_up_);
-  const std::int64_t t4 = peer_response_->stamp - correction.count();
-  offset_.add_peer_delay(request_->stamp, peer_response_->message.time_ns, peer_follow_up_->time_ns,
-                         t4);
-  report(request_->stamp, peer_response_->message.time_ns, peer_follow_up_->time_ns, t4);
+  // The follow-up brings the request's correction back. Each is taken out of its own way: out of
+  // the other it would put an arrival before the departure.
+  const std::int64_t t2 = peer_response_->message.time_ns - correction_of(*peer_follow_up_).count();
+  const std::int64_t t4 = peer_response_->stamp - correction_of(peer_response_->message).count();
+  offset_.add_peer_delay(request_->stamp, t2, peer_follow_up_->time_ns, t4);
+  report(request_->stamp, t2, peer_follow_up_->time_ns, t4);
   request_.reset();
   peer_response_.reset();
   peer_follow_up_.reset();
@@ -247,7 +247,8 @@ void PtpSlave::report(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::in
                          .t1 = HostTime(Nanoseconds(t1)),
                          .t2 = HostTime(Nanoseconds(t2)),
                          .t3 = HostTime(Nanoseconds(t3)),
-                         .t4 = HostTime(Nanoseconds(t4))});
+                         .t4 = HostTime(Nanoseconds(t4)),
+                         .is_estimated = settings_.stamps == StampSource::kProgram});
 }
 
 void PtpSlave::report_outcome_if_due() {

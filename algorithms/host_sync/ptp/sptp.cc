@@ -165,7 +165,8 @@ class SptpClient {
                            .t1 = HostTime(Nanoseconds(exchange.t3)),
                            .t2 = HostTime(Nanoseconds(exchange.t4)),
                            .t3 = HostTime(Nanoseconds(exchange.t1)),
-                           .t4 = HostTime(Nanoseconds(exchange.t2))});
+                           .t4 = HostTime(Nanoseconds(exchange.t2)),
+                           .is_estimated = settings_.stamps == StampSource::kProgram});
   }
 
   void report_outcome_if_due() {

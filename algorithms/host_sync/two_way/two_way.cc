@@ -99,8 +99,12 @@ std::optional<TwoWayExchange> TwoWayClient::complete(const TwoWayMessage& reply,
 
 TwoWayExchange TwoWayClient::report(Open& open, HostTime replied) {
   open.exchange.replied = replied;
-  host_.report_exchange(
-      {.peer = server_, .t1 = open.t1, .t2 = open.exchange.arrived, .t3 = replied, .t4 = open.t4});
+  host_.report_exchange({.peer = server_,
+                         .t1 = open.t1,
+                         .t2 = open.exchange.arrived,
+                         .t3 = replied,
+                         .t4 = open.t4,
+                         .is_estimated = true});
   return open.exchange;
 }
 
