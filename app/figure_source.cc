@@ -389,7 +389,7 @@ ArchiveFigures recording_figures(const RecordedRun& run, const FigureOptions& op
   FigureMaker maker(archive, chosen, progress);
   maker.set_rate(run.scenario().trigger.rate_hz);
   if (maker.wants("distributions") || maker.wants("host_order") || maker.wants("frame_errors")) {
-    archive.results = run.evaluate(chosen.pipelines, true, progress);
+    archive.results = run.evaluate(chosen.pipelines, {.keep_pulses = true}, progress);
   }
   const std::vector<PipelineChoice> choices =
       evaluation::choose_pipelines(run.scenario(), chosen.pipelines);

@@ -198,16 +198,19 @@ std::unique_ptr<RecordingSource> RecordedRun::source(
 }
 
 evaluation::Results RecordedRun::evaluate(const std::vector<std::string>& pipelines,
-                                          bool keep_pulses,
+                                          const Wanted& wanted,
                                           const evaluation::Progress& progress) const {
   const std::vector<evaluation::PipelineChoice> choices =
       evaluation::choose_pipelines(scenario(), pipelines);
+  std::optional<evaluation::Assumptions> certify;
+  if (wanted.certify) certify = evaluation::assumptions_of(scenario());
   evaluation::Results results = evaluation::evaluate(
       scenario(), [this, &choices] { return source(choices); },
       {.first_seed = first_seed_,
        .seeds = seeds_,
        .pipelines = pipelines,
-       .keep_pulses = keep_pulses},
+       .keep_pulses = wanted.keep_pulses,
+       .certify = certify},
       progress);
   if (!streams_) return results;
   for (evaluation::Row& row : results.rows) row.host_sync = "as_recorded";

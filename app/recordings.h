@@ -13,7 +13,7 @@
 // score.
 //
 //   const RecordedRun run("monday");
-//   const evaluation::Results results = run.evaluate(run.chosen({}), false, progress);
+//   const evaluation::Results results = run.evaluate(run.chosen({}), {}, progress);
 #pragma once
 
 #include <cstdint>
@@ -78,8 +78,12 @@ class RecordedRun {
   // needs the recording lacks (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).
   std::unique_ptr<RecordingSource> source(
       const std::vector<evaluation::PipelineChoice>& choices) const;
+  struct Wanted {
+    bool keep_pulses = false;
+    bool certify = false;  // SeedScore::certified_ms
+  };
   // Scores all recorded seeds; notes captures that are missing or damaged. Ends at Ctrl-C.
-  evaluation::Results evaluate(const std::vector<std::string>& pipelines, bool keep_pulses,
+  evaluation::Results evaluate(const std::vector<std::string>& pipelines, const Wanted& wanted,
                                const evaluation::Progress& progress) const;
 
  private:

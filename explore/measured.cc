@@ -33,7 +33,7 @@ Json panel_of(const std::vector<std::string>& inputs, const evaluation::FitStudy
   const RecordedStreams recorded = app::recorded_streams(inputs, options);
   const evaluation::Diagnosis diagnosis = evaluation::diagnose(recorded.streams, {});
   const app::RecordedRun run = app::recorded_run(inputs, options, {});
-  const evaluation::Results results = run.evaluate(run.chosen({}), false, nullptr);
+  const evaluation::Results results = run.evaluate(run.chosen({}), {}, nullptr);
   return {{"inputs", inputs},
           {"answer", reports::answer_json(reports::diagnose_answer(diagnosis))},
           {"trust", study.trust.text},

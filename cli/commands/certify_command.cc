@@ -12,10 +12,11 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
-#include "evaluation/certificates/certificate_run.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
+#include "evaluation/run/certificate_run.h"
 #include "recording/duration_in.h"
 #include "reports/certificates/certificate_report.h"
+#include "reports/text/output_file.h"
 #include "scenarios/document.h"
 
 namespace simbench::cli {
@@ -45,6 +46,7 @@ struct CertifyOptions {
   evaluation::CertificateOptions certificates;
   std::vector<std::string> sets;
   std::string within;
+  std::string pairs;
   std::optional<double> required_percent;
   std::optional<double> host_rate_ppm, camera_rate_ppm, message_ms, poll_ms, arrival_ms,
       host_stamp_ms, estimated_stamp_ms, sensor_stamp_us, trigger_hz, observed_margin_ppm;
@@ -125,7 +127,10 @@ bool meets(const evaluation::CertificateRun& run, double required_percent) {
   });
 }
 
-int run_certify(const CertifyOptions& options) {
+int run_certify(CertifyOptions options) {
+  std::optional<reports::OutputFile> pairs;  // refuses before the work what cannot be written
+  if (!options.pairs.empty()) pairs.emplace(options.pairs);
+  options.certificates.keep_pairs = pairs.has_value();
   const auto run = app::is_recording_folder(options.input) ? certify_recording(options)
                                                            : certify_scenario(options);
   if (!run) return kInterrupted;
@@ -133,6 +138,11 @@ int run_certify(const CertifyOptions& options) {
     return format == "json" ? reports::file_text(reports::certificate_json(*run))
                             : reports::drawn_as(format, reports::certificate_document(*run));
   });
+  if (pairs) {
+    pairs->write(reports::pairs_csv(*run));
+    pairs->publish();
+    print_note(options.pairs + " written");
+  }
   const bool is_met = !options.required_percent || meets(*run, *options.required_percent);
   return is_met ? kOk : kGateFailed;
 }
@@ -201,6 +211,8 @@ void add_certify_command(CommandLine& line) {
   command.count("--seeds", options->certificates.seeds, "Captures of a scenario. Default: 1");
   command.seed("--first-seed", options->certificates.first_seed, "The first seed. Default: 1");
   command.jobs(options->certificates.jobs);
+  command.output("--pairs", "FILE.csv", options->pairs,
+                 "Also write the interval of every pair of frames of every set");
   command.format(options->format, {"table", "markdown", "latex", "json"});
   command.footer(kCertifyExamples);
   command.runs([options] { return run_certify(*options); });

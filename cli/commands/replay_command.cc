@@ -48,6 +48,7 @@ struct ReplayOptions {
   std::string rank_by;
   std::string format;
   std::string output;
+  bool certify = false;
   std::vector<std::string> command;
 };
 
@@ -78,7 +79,8 @@ int run_replay(const ReplayOptions& options) {
   const std::vector<std::string> pipelines = run->chosen(options.scoring.pipelines);
   for (const std::string& note : run->missing()) print_note(note);
   auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
-    return run->evaluate(pipelines, !options.output.empty(), progress);
+    return run->evaluate(
+        pipelines, {.keep_pulses = !options.output.empty(), .certify = options.certify}, progress);
   });
   if (!results) return kInterrupted;
   app::rank_by(options.rank_by, *results);
@@ -111,6 +113,10 @@ void add_replay_command(CommandLine& line) {
                "With files: one trigger pulse started all cameras (GenLock), so that the order of\n"
                "frames tells which belong together. Default: the gathered sets are scored,\n"
                "unverified");
+  command.flag(
+      "--certify", options->certify,
+      "A column beside AMD: no two frames of 95 % of the sets were exposed further apart,\n"
+      "for sure; `simbench certify` says what limits it");
   command.rank_by(options->rank_by);
   command.format(options->format, {"table", "markdown", "latex", "json", "csv", "tidy"});
   command.output("-o,--output", "DIR", options->output,

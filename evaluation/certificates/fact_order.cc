@@ -26,6 +26,8 @@ void align_by_first_arrivals(const CaptureEvidence& evidence,
   for (std::size_t host = 0; host < first.size() && !begin; ++host) {
     if (first[host] && offset[host]) begin = *first[host] - *offset[host];
   }
+  // Where none of them has frames, as a master without cameras, any origin does.
+  for (std::size_t host = 0; host < first.size() && !begin; ++host) begin = first[host];
   for (std::size_t host = 0; begin && host < first.size(); ++host) {
     if (first[host] && !offset[host]) offset[host] = *first[host] - *begin;
   }

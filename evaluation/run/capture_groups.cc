@@ -52,23 +52,30 @@ CaptureGroups single_captures(const std::vector<PipelineChoice>& choices) {
 
 SharedCapture::SharedCapture(const scenarios::Scenario& scenario,
                              const std::vector<PipelineChoice>& choices,
-                             const std::vector<std::size_t>& group, std::uint64_t seed)
+                             const std::vector<std::size_t>& group, std::uint64_t seed,
+                             const std::optional<Assumptions>& certify)
     : recorded_(choices[group.front()]), seed_(seed) {
   for (const std::size_t place : group) {
     Member member;
     const PipelineChoice& choice = choices[place];
-    member.scorer =
-        std::make_unique<PipelineScorer>(scorer_setup(scoring_scenario(scenario, choice), choice));
-    if (choice.view) member.view = choice.view(*member.scorer);
+    const ScorerSetup setup = scorer_setup(scoring_scenario(scenario, choice), choice);
+    member.scorer = std::make_unique<PipelineScorer>(setup);
+    member.sink = member.scorer.get();
+    if (certify) {
+      member.certified = std::make_unique<CertifiedScoring>(*member.scorer, *certify, setup.stream);
+      member.sink = member.certified.get();
+    }
+    if (choice.view) {
+      member.view = choice.view(*member.sink);
+      member.sink = member.view.get();
+    }
     members_.push_back(std::move(member));
   }
 }
 
 void SharedCapture::record(RecordingSource& source, const ShareDone& share_done) {
   std::vector<RecordingSink*> sinks;
-  for (const Member& member : members_) {
-    sinks.push_back(member.view ? member.view.get() : member.scorer.get());
-  }
+  for (const Member& member : members_) sinks.push_back(member.sink);
   ForkedSink fork(sinks);
   std::exception_ptr failure;
   try {
@@ -83,7 +90,9 @@ void SharedCapture::record(RecordingSource& source, const ShareDone& share_done)
 
 SeedScore SharedCapture::score(std::size_t member) {
   if (members_[member].failure) std::rethrow_exception(members_[member].failure);
-  return captured_score(*members_[member].scorer, cost_, seed_);
+  SeedScore score = captured_score(*members_[member].scorer, cost_, seed_);
+  if (members_[member].certified) members_[member].certified->add_to(score);
+  return score;
 }
 
 }  // namespace simbench::evaluation

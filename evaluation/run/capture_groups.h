@@ -21,9 +21,11 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "evaluation/certificates/certified_scoring.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/recording.h"
@@ -50,9 +52,10 @@ CaptureGroups single_captures(const std::vector<PipelineChoice>& choices);
 // The capture of a group at a seed.
 class SharedCapture {
  public:
-  // `choices` must outlive this.
+  // `choices` must outlive this. Scores have certificates under `certify`, if there is any.
   SharedCapture(const scenarios::Scenario& scenario, const std::vector<PipelineChoice>& choices,
-                const std::vector<std::size_t>& group, std::uint64_t seed);
+                const std::vector<std::size_t>& group, std::uint64_t seed,
+                const std::optional<Assumptions>& certify = {});
 
   // Records it with the first choice of the group, to scorers of all. Keeps what goes wrong. Once.
   void record(RecordingSource& source, const ShareDone& share_done = {});
@@ -65,7 +68,9 @@ class SharedCapture {
   // A scorer and what comes before it.
   struct Member {
     std::unique_ptr<PipelineScorer> scorer;
-    std::unique_ptr<RecordingSink> view;  // null: none
+    std::unique_ptr<CertifiedScoring> certified;  // null: not asked for
+    std::unique_ptr<RecordingSink> view;          // null: none
+    RecordingSink* sink = nullptr;                // the outermost of them
     std::exception_ptr failure;
   };
 

@@ -133,7 +133,7 @@ class EvaluationRun {
     const std::vector<std::size_t>& group = groups_[order_[number_of_run % groups_.size()]];
     const std::uint64_t number = first + number_of_run / groups_.size();
     const std::uint64_t seed = options_.first_seed + number;
-    SharedCapture capture(scenario_, choices_, group, seed);
+    SharedCapture capture(scenario_, choices_, group, seed, options_.certify);
     parts_->begin(number_of_run);
     capture.record(source, parts_->share_of(number_of_run));
     parts_->end(number_of_run);
@@ -252,6 +252,7 @@ Results evaluate(const Scenario& scenario, const SourceFactory& make_source,
 Results evaluate_choices(const Scenario& scenario, std::vector<PipelineChoice> choices,
                          const SourceFactory& make_source, const EvaluationOptions& options,
                          const Progress& progress) {
+  if (options.certify) check_certifiable(scenario);
   return EvaluationRun(scenario, std::move(choices), make_source, options, progress)
       .run_to(options.seeds, {});
 }

@@ -83,6 +83,9 @@ struct MetricValues {
   // Only rigs of depth and colour have these (colour_offset.h).
   Value colour_offset_ms = no_value<Value>();
   Value colour_offset_spread_ms = no_value<Value>();  // over the cameras
+  // Only evaluations that certify have it (EvaluationOptions::certify): no two frames of 95 % of
+  // the sets are further apart (certificates/certify.h); NaN where nothing bounds it.
+  Value certified_ms = no_value<Value>();
   // Only rows of Algorithms 1 and 2 have these (session_scores.h): means over the slaves.
   Value t_l_ms = no_value<Value>();           // network synchronisation delay, as measured
   Value t_t_ms = no_value<Value>();           // time synchronisation delay, as measured

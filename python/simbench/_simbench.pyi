@@ -21,6 +21,7 @@ class RunRequest:
     keep_pulses: bool
     rank_by: str
     no_levers: bool
+    certify: bool
     command: List[str]
 
 class RecordingToScore:
@@ -30,6 +31,7 @@ class RecordingToScore:
     pipelines: List[str]
     stream: str
     genlock: bool
+    certify: bool
     rank_by: str
     command: List[str]
 

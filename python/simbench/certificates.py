@@ -78,6 +78,7 @@ def certify(
     trigger_hz: Optional[float] = None,
     trigger_spread_us: Optional[float] = None,
     causal: bool = False,
+    pairs: Optional[Path] = None,
     set: Optional[Mapping[str, Any]] = None,
     seeds: int = 1,
     first_seed: int = 1,
@@ -99,6 +100,7 @@ def certify(
     common_trigger: pulses of one trigger expose all frames; trigger_hz: its rate, else the
         scenario's; trigger_spread_us: of the exposures of one pulse, 100.
     causal: use only what came before a set's last exposure.
+    pairs: also write the interval of every pair of frames of every set to this CSV file.
     set, seeds, first_seed, jobs: of a scenario, as for run().
     progress: show it; None: where tqdm is installed and somebody looks.
     """
@@ -109,7 +111,8 @@ def certify(
         arrival_ms=arrival_ms, host_stamp_ms=host_stamp_ms,
         estimated_stamp_ms=estimated_stamp_ms, sensor_stamp_us=sensor_stamp_us,
         common_trigger=bool(common_trigger), trigger_hz=trigger_hz,
-        trigger_spread_us=trigger_spread_us, causal=bool(causal), set=sets_of(set),
+        trigger_spread_us=trigger_spread_us, causal=bool(causal),
+        pairs=None if pairs is None else os.fspath(pairs), set=sets_of(set),
         seeds=_whole("seeds", seeds, 1, 1_000_000), first_seed=first_seed,
         jobs=_whole("jobs", jobs, 0, 4096) or None,
     )  # fmt: skip

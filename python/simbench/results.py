@@ -298,6 +298,7 @@ def run(
     jobs: int = 0,
     rank_by: Optional[str] = None,
     no_levers: bool = False,
+    certify: bool = False,
     program: Union[str, Sequence[str]] = (),
     program_log: Optional[Path] = None,
     python: Union[Path, Sequence[Path]] = (),
@@ -317,6 +318,8 @@ def run(
     jobs: threads; 0: one for every core.
     rank_by: rank the pipelines by this metric.
     no_levers: the answer does not look for what would improve the best pipeline.
+    certify: rows have certified_ms: no two frames of 95 % of the sets were exposed further apart, for
+        sure (certify() says what limits it).
     program: also pipelines of real programs, ["mine=examples/cristian.json"], or names of built-in
         ones; program_log: a folder for what they print.
     python: files with algorithms, which are imported first.
@@ -331,6 +334,7 @@ def run(
     if seeds is None:
         seeds = 1 if backend == "hardware" else 32
     request = request_of("run", scenario, pipelines, seeds, first_seed, set, jobs)
+    request.certify = bool(certify)
     if backend != "sim" or rig is not None or key_file is not None:
         return _run_on_rig(request, backend, rig, key_file, progress)
     _add_programs(request, program, program_log)
@@ -358,7 +362,8 @@ def _run_on_rig(
     options = words_of(
         scenario=request.scenario, pipelines=",".join(request.pipelines) or None,
         set=[f"{pointer}={value}" for pointer, value in request.sets], seeds=request.seeds,
-        first_seed=request.first_seed, backend=backend, rig=rig, key_file=key_file, output=archive,
+        first_seed=request.first_seed, certify=request.certify, backend=backend, rig=rig,
+        key_file=key_file, output=archive,
     )  # fmt: skip
     run_command("run", options, progress=progress)
     return Result(_simbench.load_archive(archive), progress, archive, folder)

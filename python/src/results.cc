@@ -48,6 +48,8 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const Object& on_progre
   run->scenario = load_scenario(request);
   const Scenario& scenario = *run->scenario;
   evaluation::check_pipelines(scenario);
+  std::optional<evaluation::Assumptions> certify;
+  if (request.certify) certify = evaluation::assumptions_of(scenario);
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
     return evaluation::evaluate(
         scenario, [&] { return app::simulated_world(scenario); },
@@ -56,7 +58,8 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const Object& on_progre
          .jobs = request.jobs,
          .pipelines = request.pipelines,
          .keep_pulses = request.keep_pulses,
-         .share_captures = true},
+         .share_captures = true,
+         .certify = certify},
         progress);
   });
   run->provenance->finished = std::chrono::system_clock::now();
@@ -100,7 +103,7 @@ std::shared_ptr<Run> score_recording(const RecordingToScore& wanted, const Objec
   run->notes = recorded.missing();
   const std::vector<std::string> chosen = recorded.chosen(wanted.pipelines);
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
-    return recorded.evaluate(chosen, true, progress);
+    return recorded.evaluate(chosen, {.keep_pulses = true, .certify = wanted.certify}, progress);
   });
   app::rank_by(wanted.rank_by, run->archive.results);
   run->provenance->finished = std::chrono::system_clock::now();
@@ -334,7 +337,8 @@ void bind_run(const Object& module) {
             field<&RunRequest::sets>("sets"), field<&RunRequest::seeds>("seeds"),
             field<&RunRequest::first_seed>("first_seed"), field<&RunRequest::jobs>("jobs"),
             field<&RunRequest::keep_pulses>("keep_pulses"), field<&RunRequest::rank_by>("rank_by"),
-            field<&RunRequest::no_levers>("no_levers"), field<&RunRequest::command>("command")},
+            field<&RunRequest::no_levers>("no_levers"), field<&RunRequest::certify>("certify"),
+            field<&RunRequest::command>("command")},
        .make = maker("RunRequest", [] { return RunRequest{}; })});
   add_class<RecordingToScore>(
       module, "simbench._simbench.RecordingToScore",
@@ -344,6 +348,7 @@ void bind_run(const Object& module) {
                       field<&RecordingToScore::pipelines>("pipelines"),
                       field<&RecordingToScore::stream>("stream"),
                       field<&RecordingToScore::genlock>("genlock"),
+                      field<&RecordingToScore::certify>("certify"),
                       field<&RecordingToScore::rank_by>("rank_by"),
                       field<&RecordingToScore::command>("command")},
        .make = maker("RecordingToScore", [] { return RecordingToScore{}; })});

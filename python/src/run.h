@@ -29,6 +29,7 @@ struct RunRequest {
   bool keep_pulses = true;
   std::string rank_by{};   // a metric; "": what the scenario says
   bool no_levers = false;  // the answer does not look for what would improve the best pipeline
+  bool certify = false;    // rows have certified_ms
   std::vector<std::string> command;  // for the archive
 };
 
@@ -40,6 +41,7 @@ struct RecordingToScore {
   std::vector<std::string> pipelines{};
   std::string stream{};
   bool genlock = false;
+  bool certify = false;  // rows have certified_ms
   std::string rank_by{};
   std::vector<std::string> command{};  // for the archive
 };

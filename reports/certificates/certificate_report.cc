@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recording/counted.h"
+#include "recording/text_fields.h"
 #include "reports/text/answer_json.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -264,6 +265,26 @@ Document certificate_document(const CertificateRun& run) {
   document.blocks.push_back(ties_block(run));
   document.blocks.push_back(assumed_block(run));
   return document;
+}
+
+std::string pairs_csv(const CertificateRun& run) {
+  std::string text =
+      "pipeline,seed,set,first_camera,first_sensor_us,second_camera,second_sensor_us,least_ms,"
+      "most_ms,truth_ms\n";
+  constexpr std::int64_t kNanosecondsAMicrosecond = 1000;
+  const auto us = [](DeviceTime sensor) {
+    return nanoseconds_of(sensor) / kNanosecondsAMicrosecond;
+  };
+  for (const CertificateRow& row : run.rows) {
+    const std::string pipeline = csv_cell(row.pipeline);
+    for (const evaluation::CertifiedPair& pair : row.pairs) {
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", pipeline, pair.seed, pair.set,
+                          pair.first_camera, us(pair.first_sensor), pair.second_camera,
+                          us(pair.second_sensor), csv_cell(pair.least_ms), csv_cell(pair.most_ms),
+                          pair.truth_ms ? csv_cell(*pair.truth_ms) : "");
+    }
+  }
+  return text;
 }
 
 Json certificate_json(const CertificateRun& run) {

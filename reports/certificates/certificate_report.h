@@ -13,7 +13,7 @@
 // bounds it.
 #pragma once
 
-#include "evaluation/certificates/certificate_run.h"
+#include "evaluation/run/certificate_run.h"
 #include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
@@ -23,5 +23,13 @@ namespace simbench::reports {
 AnswerText certificate_answer(const evaluation::CertificateRun& run);
 Document certificate_document(const evaluation::CertificateRun& run);
 Json certificate_json(const evaluation::CertificateRun& run);
+
+// The pairs of frames that were kept (CertificateOptions::keep_pairs), a line each, for who wants
+// each interval: the second frame was exposed least_ms to most_ms after the first, for sure; empty
+// where nothing bounds it, and truth_ms where nobody knows it.
+//
+//   pipeline,seed,set,first_camera,first_sensor_us,second_camera,second_sensor_us,least_ms,most_ms,
+//   truth_ms
+std::string pairs_csv(const evaluation::CertificateRun& run);
 
 }  // namespace simbench::reports

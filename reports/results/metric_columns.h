@@ -20,6 +20,7 @@ struct TablePlaces {
   int time_errors = 0;     // the hosts' time errors
   int alignment = 0;       // exposures that are steered
   int colour = 0;          // depth against colour
+  int certificates = 0;    // beside AMD, where captures are certified
   int sessions = 0;        // sessions of Algorithms 1 and 2
   int sets = 0;            // gathered sets
   int clocks = 0;          // runs of the hosts' clocks

@@ -88,6 +88,7 @@ Table paper_table(const Results& results) {
     if (published && metric->id == std::string_view("amd_ms")) {
       append(fields, published_amd_fields());
     }
+    if (metric->id == std::string_view("amd_ms")) append(fields, certified_fields(results));
     if (published && metric->id == std::string_view("rmdv_ms")) {
       append(fields, published_rmdv_fields());
     }
@@ -174,7 +175,8 @@ std::vector<std::string> results_legend(const Results& results) {
   append_legends(&TablePlaces::paper, lines);
   append_legends(&TablePlaces::truth, lines);
   if (has_time_errors(results)) append_legends(&TablePlaces::time_errors, lines);
-  for (const auto table : {&TablePlaces::alignment, &TablePlaces::colour, &TablePlaces::sessions}) {
+  for (const auto table : {&TablePlaces::certificates, &TablePlaces::alignment,
+                           &TablePlaces::colour, &TablePlaces::sessions}) {
     if (!rows_with(results, table).empty()) append_legends(table, lines);
   }
   if (std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera)) {
@@ -351,6 +353,15 @@ std::optional<Block> search_block(const Results& results) {
                          "frames and time of a search, the largest of any camera and seed; wrong "
                          "place: the probability that the search itself states "
                          "(docs/coded_trigger.md section 4)."}};
+}
+
+RowFields certified_fields(const Results& results) {
+  RowFields fields;
+  if (rows_with(results, &TablePlaces::certificates).empty()) return fields;
+  for (const Metric* metric : table_metrics(&TablePlaces::certificates)) {
+    append(fields, metric_fields(*metric));
+  }
+  return fields;
 }
 
 std::vector<std::string> alignment_legend() {

@@ -36,6 +36,8 @@ std::vector<std::string> results_head(const evaluation::Results& results,
 
 // The columns of a metric in a table of rows: its value and, if it has a heading, its band.
 std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
+// What stands beside AMD where captures were certified; none where none was.
+std::vector<Field<evaluation::Row>> certified_fields(const evaluation::Results& results);
 
 // What each row is among these: the best, failed, a limit, a reference.
 Field<evaluation::Row> standing_field(const std::vector<const evaluation::Row*>& rows,

@@ -72,6 +72,8 @@ RowFields summary_fields(const Results& results, const std::vector<const Row*>& 
     add_metric(*metric, fields);
     if (metric->id != std::string_view("amd_ms")) continue;
     add_published_amd(results, fields);
+    const RowFields certified = certified_fields(results);
+    fields.insert(fields.end(), certified.begin(), certified.end());
   }
   return fields;
 }

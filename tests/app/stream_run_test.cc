@@ -33,7 +33,7 @@ using testing::ThrowsMessage;
 
 Results scored(std::vector<RecordedStream> streams, const StreamScoring& scoring = {}) {
   const RecordedRun run({"rig.csv"}, {.streams = std::move(streams), .notes = {}}, scoring);
-  return run.evaluate(run.chosen(scoring.pipelines), false, nullptr);
+  return run.evaluate(run.chosen(scoring.pipelines), {}, nullptr);
 }
 
 const SeedScore& score_of(const Results& results, const std::string& pipeline) {

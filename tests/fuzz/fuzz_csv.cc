@@ -15,6 +15,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const simbench::app::RecordedRun run({"fuzz.csv"}, {.streams = reader.take(), .notes = {}}, {});
-  run.evaluate(run.chosen({}), false, nullptr);
+  run.evaluate(run.chosen({}), {}, nullptr);
   return 0;
 }

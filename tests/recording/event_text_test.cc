@@ -64,6 +64,8 @@ TEST(EventTextTest, TheOtherKinds) {
             "poll,5,77,1,2,3,4");
   EXPECT_EQ(to_line(ExchangeEvent{1, {0, at<HostTime>(1), {}, at<HostTime>(3), {}}}),
             "exchange,1,0,1,,3,");
+  EXPECT_EQ(to_line(ExchangeEvent{1, {.peer = 0, .t1 = at<HostTime>(1), .is_estimated = true}}),
+            "exchange,1,0,1,,,,estimated");
   EXPECT_EQ(to_line(SyncOutcome{2, false, 200, "a, b\\c\r\nd"}),
             "outcome,2,false,200,a\\, b\\\\c\\r\\nd");
   EXPECT_EQ(to_line(AlignmentReport{7, true, 40, "1.2 ms, late"}),
@@ -164,6 +166,10 @@ TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_THAT(line_error("pulse,1,2,3;;4"), HasSubstr("column 4 (error_ns): found '3;;4'"));
   EXPECT_THAT(line_error("pulse,1,2,3;"), HasSubstr("column 4 (error_ns): found '3;'"));
   EXPECT_THAT(line_error("exchange,1,0,1,2,3"), HasSubstr("column 7 (t4_ns): missing"));
+  EXPECT_THAT(
+      line_error("exchange,1,0,1,2,3,4,guessed"),
+      HasSubstr("column 8 (estimated): found 'guessed', allowed: \"estimated\" or nothing"));
+  EXPECT_THAT(line_error("exchange,1,0,1,2,3,4,estimated,5"), HasSubstr("column 9"));
   EXPECT_THAT(line_error("delays,1,1,0,0,1,2,3,4"), HasSubstr("column 10 (set_ns): missing"));
   EXPECT_THAT(line_error("delays,1,1,0,0,1.5,2,3,4,5"),
               HasSubstr("column 6 (t_l_ns): found '1.5', allowed: a whole number from"));

@@ -41,6 +41,9 @@ inline void set_without_colour(evaluation::Row& row) {
   row.colour_offset_ms = row.colour_offset_spread_ms = no_series();
 }
 
+// Makes it the row of captures that were not certified.
+inline void set_uncertified(evaluation::Row& row) { row.certified_ms = no_series(); }
+
 // Makes it the row of a host synchronisation without sessions that have delays.
 inline void set_without_sessions(evaluation::Row& row) {
   row.t_l_ms = row.t_t_ms = row.t_d_ms = row.session_passes = no_series();
@@ -124,6 +127,7 @@ inline evaluation::Row full_row() {
                                                    .amd_percentile = {50, 32.25, 67.75},
                                                    .rmdv_percentile = {100, 95.25, 100}};
   set_unsteered(both);
+  set_uncertified(both);
   set_without_colour(both);
   set_without_sessions(both);
   both.seeds = {seed_score(1), seed_score(2)};
@@ -155,6 +159,7 @@ inline evaluation::Row bare_row() {
   none.set_absolute_error_ms = no_series();
   none.emission_latency_ms = no_series();
   set_unsteered(none);
+  set_uncertified(none);
   set_without_colour(none);
   set_without_sessions(none);
   return none;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,27 @@ using Json = nlohmann::ordered_json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 class CertifyCommand : public ProgramTest {
  protected:
   // A small rig on a LAN.
   static std::vector<std::string> rig(std::vector<std::string> options) {
-    std::vector<std::string> arguments = {
-        "certify", "18cam_6host_45fps_lan", "--pipelines", "two_way_hull",
-        "--set",   "/cameras/count=6",      "--set",       "/hosts/count=2",
-        "--set",   "/timeline/frames=20",   "--set",       "/timeline/warm_up_ms=200"};
+    std::vector<std::string> arguments = {"certify",
+                                          "18cam_6host_45fps_lan",
+                                          "--pipelines",
+                                          "two_way_hull",
+                                          "--set",
+                                          "/cameras/count=6",
+                                          "--set",
+                                          "/hosts/count=2",
+                                          "--set",
+                                          "/timeline/frames=20",
+                                          "--set",
+                                          "/timeline/warm_up_ms=200",
+                                          "--estimated-stamp-ms",
+                                          "0.02"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
   }
@@ -71,8 +83,9 @@ TEST_F(CertifyCommand, ARequirementThatIsNotMetIsStatusThree) {
 }
 
 TEST_F(CertifyCommand, AWrongAssumptionIsProved) {
-  const ProgramResult result = run(rig({"--set", "/hosts/clock/skew_of_host_ppm=[300,-300]",
-                                        "--set", "/timeline/warm_up_ms=3000", "--require", "0"}));
+  const ProgramResult result =
+      run(rig({"--set", "/hosts/clock/skew_of_host_ppm=[300,-300]", "--set",
+               "/timeline/warm_up_ms=3000", "--require", "0", "--host-rate-ppm", "50"}));
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("Contradictions"), HasSubstr(" before it began"),
                                 HasSubstr("with rates of +-500 ppm nothing contradicts"),
@@ -88,13 +101,76 @@ TEST_F(CertifyCommand, ARecordingHasThoseOfItsRun) {
                                      "monday"};
   record.insert(record.end(), world.begin(), world.end());
   ASSERT_EQ(run(record).status, 0);
-  std::vector<std::string> certify = {"certify", "18cam_6host_45fps_lan", "--pipelines",
-                                      "two_way_hull", "--json"};
+  std::vector<std::string> certify = {
+      "certify", "18cam_6host_45fps_lan", "--pipelines", "two_way_hull",
+      "--json",  "--estimated-stamp-ms",  "0.02"};
   certify.insert(certify.end(), world.begin(), world.end());
   const ProgramResult of_run = run(certify);
-  const ProgramResult of_folder = run({"certify", "monday", "--json"});
+  const ProgramResult of_folder =
+      run({"certify", "monday", "--json", "--estimated-stamp-ms", "0.02"});
   ASSERT_EQ(of_folder.status, 0) << of_folder.err;
   EXPECT_EQ(Json::parse(of_run.out)["rows"], Json::parse(of_folder.out)["rows"]);
+}
+
+// A protocol whose stamps are estimates: nothing is proved, and what to do is said.
+TEST_F(CertifyCommand, WhatIsLeftOutIsNamed) {
+  const ProgramResult result = run({"certify", "18cam_6host_45fps_lan", "--pipelines",
+                                    "two_way_hull", "--set", "/timeline/frames=5"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(StartsWith("18cam_6host_45fps_lan"), HasSubstr("Nothing is certified: "),
+                    HasSubstr("Left out"), HasSubstr("--estimated-stamp-ms")));
+}
+
+// Beside AMD, in tables and results.
+TEST_F(CertifyCommand, RunsHaveItsColumn) {
+  const std::vector<std::string> run_it = {"run",
+                                           "--scenario",
+                                           "18cam_6host_45fps_lan",
+                                           "--pipelines",
+                                           "two_way_min_rtt,chrony",
+                                           "--set",
+                                           "/timeline/frames=10",
+                                           "--seeds",
+                                           "2",
+                                           "--no-levers"};
+  const auto with = [&](std::vector<std::string> options) {
+    std::vector<std::string> arguments = run_it;
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  };
+  EXPECT_THAT(with({}).out, Not(HasSubstr("certified")));
+  const ProgramResult table = with({"--certify"});
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("certified"));
+  const ProgramResult json = with({"--certify", "--format", "json"});
+  ASSERT_EQ(json.status, 0) << json.err;
+  const Json rows = Json::parse(json.out)["rows"];
+  EXPECT_TRUE(rows[0]["certified_ms"]["median"].is_null());
+  EXPECT_GT(rows[1]["certified_ms"]["median"], 1.0);
+  EXPECT_EQ(with({"--certify", "--budget"}).status, 2);
+}
+
+TEST_F(CertifyCommand, EveryPairHasItsInterval) {
+  const ProgramResult result = run(rig({"--pairs", "pairs.csv"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::istringstream lines(content("pairs.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "pipeline,seed,set,first_camera,first_sensor_us,second_camera,second_sensor_us,"
+            "least_ms,most_ms,truth_ms");
+  std::size_t pairs = 0;
+  while (std::getline(lines, line)) {
+    ++pairs;
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 10U) << line;
+    EXPECT_LE(std::stod(cells[7]), std::stod(cells[9]));
+    EXPECT_GE(std::stod(cells[8]), std::stod(cells[9]));
+  }
+  EXPECT_EQ(pairs, 20U * 15);
 }
 
 TEST_F(CertifyCommand, BadInputIsNamed) {
@@ -107,6 +183,8 @@ TEST_F(CertifyCommand, BadInputIsNamed) {
   refused(rig({"--within", "1"}), "--within: found '1', allowed: a time above 0 with its unit");
   refused(rig({"--trigger-spread-us", "1"}), "--common-trigger");
   refused({"certify", "no_such_rig"}, "no_such_rig");
+  refused({"certify", "scale_18000cam_6000host_45fps"},
+          "found 6000 hosts and 18000 cameras, allowed: 1000 together");
   refused({"certify", "18cam_6host_45fps_lan", "--pipelines", "nothing"}, "nothing");
 }
 

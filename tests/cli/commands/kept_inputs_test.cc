@@ -51,6 +51,7 @@ const std::vector<Words>& writing_commands() {
       {"export", "in.csv", "--output"},
       {"fit", "in.csv", "--output"},
       {"code", "18cam_6host_90fps_coded", "--export"},
+      {"certify", "18cam_6host_45fps_lan", "--pairs"},
       {"keygen", "FILE"},
       {"node", "--rig", "rig.json", "--name", "a", "--journal"},
       {"node", "--rig", "rig.json", "--name", "a", "--programs-on", "lo", "--program-log"},

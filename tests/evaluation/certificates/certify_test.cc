@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "algorithms/certificates/clock_graph.h"
-#include "evaluation/certificates/certificate_run.h"
 #include "evaluation/certificates/contradiction.h"
 #include "evaluation/certificates/frontier.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
+#include "evaluation/run/certificate_run.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
@@ -167,9 +167,21 @@ struct SmallWorld {
         with_ad_hoc_pipelines("18cam_6host_45fps_lan", overrides, {"two_way_hull"}));
   }
 
+  // Its stamps are estimates of its clocks, which nobody else sets.
+  Assumptions assumptions() const {
+    Assumptions assumed = assumptions_of(scenario);
+    assumed.estimated_stamp_ms = 0.02;
+    return assumed;
+  }
+
   CertificateRun run(std::uint64_t seeds, Horizon horizon = Horizon::kWhole) const {
-    CertificateOptions options{.pipelines = {"two_way_hull"}, .seeds = seeds, .horizon = horizon};
-    options.assumptions = assumptions_of(scenario);
+    return run(seeds, assumptions(), horizon);
+  }
+
+  CertificateRun run(std::uint64_t seeds, const Assumptions& assumed,
+                     Horizon horizon = Horizon::kWhole) const {
+    const CertificateOptions options{
+        .pipelines = {"two_way_hull"}, .seeds = seeds, .horizon = horizon, .assumptions = assumed};
     return certify_pipelines(
         scenario, [&] { return sim::make_simulation(scenario); }, options, nullptr);
   }
@@ -181,7 +193,7 @@ struct SmallWorld {
 TEST(Certify, IntervalsAreShortestPathsOfTheWholeGraph) {
   const SmallWorld world({});
   const PipelineChoice choice = choose_pipelines(world.scenario, {"two_way_hull"}).front();
-  CaptureEvidence evidence(assumptions_of(world.scenario), StreamKind::kDepth);
+  CaptureEvidence evidence(world.assumptions(), StreamKind::kDepth);
   record_run(*sim::make_simulation(world.scenario), choice, 1, evidence);
   // A frame of each camera, near each other, in three sets.
   std::vector<EvidenceSet> sets(3);
@@ -276,10 +288,26 @@ TEST(Certify, WhatHasNoBoundProvesNothing) {
   EXPECT_EQ(row.frames, 0U);
 }
 
+// Exchanges whose stamps are estimates prove nothing until their error is stated.
+TEST(Certify, EstimatedStampsAreLeftOut) {
+  const SmallWorld world({});
+  const CertificateRow without = world.run(1, assumptions_of(world.scenario)).rows.front();
+  EXPECT_EQ(without.messages, 0U);
+  EXPECT_GT(without.estimated_exchanges, 0U);
+  EXPECT_TRUE(std::isinf(without.certified_ms(0)));
+  const CertificateRow with = world.run(1).rows.front();
+  EXPECT_EQ(with.messages, 2 * without.estimated_exchanges);
+  EXPECT_EQ(with.estimated_exchanges, 0U);
+  EXPECT_TRUE(std::isfinite(with.certified_ms(1)));
+}
+
 // Quartzes of 200 ppm under an assumption of 50: found, not certified.
 TEST(Certify, AWrongAssumptionIsFound) {
   const SmallWorld world({"/hosts/clock/skew_of_host_ppm", "[200,-200]", "/timeline/frames", "90"});
-  const CertificateRow row = world.run(1).rows.front();
+  Assumptions assumed = world.assumptions();
+  EXPECT_GE(assumed.host_rate_ppm, 200);
+  assumed.host_rate_ppm = 50;
+  const CertificateRow row = world.run(1, assumed).rows.front();
   ASSERT_EQ(row.contradicted.size(), 1U);
   EXPECT_GE(row.contradicted.front().chain.size(), 2U);
   EXPECT_EQ(row.contradicted.front().possible_ppm, 200.0);

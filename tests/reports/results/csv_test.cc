@@ -27,13 +27,13 @@ TEST(ResultsCsv, OneLinePerPipeline) {
             "exposure_spread_p95_ms,aligned_1_ms_s,aligned_0_1_ms_s,aligned_0_01_ms_s,"
             "disturbed_frames,exposure_drift_ppm,wrong_locks,colour_offset_ms,"
             "colour_offset_spread_ms,t_l_ms,t_t_ms,t_d_ms,session_passes,get_time_ms,"
-            "set_time_ms,message_time_ms,scored_seeds,standing,failed\n"
+            "set_time_ms,message_time_ms,certified_ms,scored_seeds,standing,failed\n"
             "yoon2021_both,yoon2021_both,regression_30,yoon2021,2,1.5,2.5,0.75,0.5,1,29,28,30,"
             "-29,-28,-30,0.5,0.25,0.75,0.0625,0,0.125,1,0.75,8.5,34560,34557,3,960,1,2.438,1,50,"
-            "1.8044,0,0,30,720,720,0,0,4,0,21,1.75,28,0.25,6,,,,,,,,,,,,,,,,,,2,failed,"
+            "1.8044,0,0,30,720,720,0,0,4,0,21,1.75,28,0.25,6,,,,,,,,,,,,,,,,,,,2,failed,"
             "hosts were not synchronised (1 over all seeds)\n"
             "free_running,free_running,raw_arrival,yoon2021,750250,500,1500000,250,200,300,,,,,,"
-            ",,,,,,,,0,,0,0,0,0,0,,,,,,,,0,0,0,0,0,0,0,,,,,,,,,,,,,,,,,,,,,,2,failed,"
+            ",,,,,,,,0,,0,0,0,0,0,,,,,,,,0,0,0,0,0,0,0,,,,,,,,,,,,,,,,,,,,,,,2,failed,"
             "no pulse was delivered by all cameras\n");
 }
 

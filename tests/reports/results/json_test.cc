@@ -67,6 +67,7 @@ TEST(ResultsJson, ARowHasEverything) {
     "get_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "set_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "message_time_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
+    "certified_ms": {"median": null, "p05": null, "p95": null, "values": [null, null]},
     "scored_seeds": 2, "ground_truth": "simulation", "verified": true, "notes": [],
     "standing": "failed", "failed": "hosts were not synchronised (1 over all seeds)",
     "published": {

@@ -1,4 +1,4 @@
-#include "evaluation/certificates/certificate_run.h"
+#include "evaluation/run/certificate_run.h"
 
 #include <fmt/format.h>
 
@@ -13,59 +13,15 @@
 #include <tuple>
 #include <utility>
 
+#include "evaluation/certificates/certified_scoring.h"
 #include "evaluation/certificates/contradiction.h"
 #include "evaluation/run/jobs.h"
-#include "evaluation/scoring/score_observer.h"
 #include "evaluation/statistics/statistics.h"
-#include "recording/forked_sink.h"
 
 namespace simbench::evaluation {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
-
-double bound_ms(Picoseconds apart) {
-  return ClockGraph::is_bounded(apart) ? to_ms(apart) : kUnknown;
-}
-
-// The sets of a scorer, by their cameras and sensor stamps.
-class SetCollector final : public ScoreObserver {
- public:
-  using Member = std::pair<std::uint32_t, DeviceTime>;
-
-  void on_stamp(const GatherFrame& /*frame*/) override {}
-  void on_set(std::span<const GatherFrame> set, bool /*complete*/, GlobalTime /*now*/) override {
-    std::vector<Member>& members = sets_.emplace_back();
-    for (const GatherFrame& frame : set) members.emplace_back(frame.source, frame.sensor);
-  }
-  void on_shift(Nanoseconds /*shift*/) override {}
-
-  const std::vector<std::vector<Member>>& sets() const { return sets_; }
-
- private:
-  std::vector<std::vector<Member>> sets_;
-};
-
-// The sets' frames in the evidence. A frame belongs to one set; of frames of one camera with one
-// stamp, as after a reset of its clock, the first that belongs to none is meant.
-std::vector<EvidenceSet> frames_of(const SetCollector& collected, const CaptureEvidence& evidence) {
-  std::multimap<SetCollector::Member, std::size_t> free;
-  for (std::size_t i = 0; i < evidence.frames().size(); ++i) {
-    const FrameEvidence& frame = evidence.frames()[i];
-    free.emplace_hint(free.end(), SetCollector::Member(frame.camera, frame.sensor), i);
-  }
-  std::vector<EvidenceSet> sets;
-  for (const auto& members : collected.sets()) {
-    EvidenceSet& set = sets.emplace_back();
-    for (const SetCollector::Member& member : members) {
-      const auto found = free.find(member);
-      if (found == free.end()) continue;
-      set.push_back(found->second);
-      free.erase(found);
-    }
-  }
-  return sets;
-}
 
 // When the clocks were read: of each camera by polls, of each host by messages.
 class Readings {
@@ -163,6 +119,7 @@ struct CapturePart {
   std::string problem{};
   std::vector<ContradictedCapture> contradicted{};
   std::vector<double> apart_ms{};
+  std::vector<CertifiedPair> pairs{};
   std::size_t impossible_sets = 0;
   std::size_t frames = 0, frames_outside = 0;
   std::size_t messages = 0, unusable_messages = 0, estimated_exchanges = 0, polls = 0;
@@ -194,16 +151,32 @@ void add_sets(const CertifiedCapture& found, const std::vector<EvidenceSet>& set
   }
 }
 
+double bound_of(Picoseconds bound, double unknown_ms) {
+  return ClockGraph::is_bounded(std::chrono::abs(bound)) ? to_ms(bound) : unknown_ms;
+}
+
+CertifiedPair pair_of(const CaptureEvidence& evidence, const EvidenceSet& frames,
+                      const PairInterval& pair) {
+  const FrameEvidence& first = evidence.frames()[frames[pair.first]];
+  const FrameEvidence& second = evidence.frames()[frames[pair.second]];
+  CertifiedPair found{.first_camera = first.camera,
+                      .second_camera = second.camera,
+                      .first_sensor = first.sensor,
+                      .second_sensor = second.sensor,
+                      .least_ms = bound_of(pair.least, -kUnknown),
+                      .most_ms = bound_of(pair.most, kUnknown)};
+  if (first.truth && second.truth) found.truth_ms = to_ms(*second.truth - *first.truth);
+  return found;
+}
+
 CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineChoice& choice,
                             std::uint64_t seed, RecordingSource& source,
                             const CertificateOptions& options) {
   CapturePart part;
   const ScorerSetup setup = scorer_setup(scenario, choice);
   PipelineScorer scorer(setup);
-  SetCollector collected;
-  scorer.watch(collected);
-  CaptureEvidence evidence(options.assumptions, setup.stream);
-  ForkedSink both({&scorer, &evidence});
+  CertifiedScoring both(scorer, options.assumptions, setup.stream);
+  const CaptureEvidence& evidence = both.evidence();
   try {
     const SeedScore score = score_run(source, choice, seed, scorer, both);
     if (!score.program_failures.empty()) part.problem = score.program_failures.front().how;
@@ -215,14 +188,23 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
   part.unusable_messages = evidence.unusable_messages();
   part.estimated_exchanges = evidence.estimated_exchanges();
   part.polls = evidence.polls().size();
-  const std::vector<EvidenceSet> sets = frames_of(collected, evidence);
+  const std::vector<EvidenceSet> sets = both.sets();
   const FactOrder order(evidence);
-  const CertifiedCapture found = certify(evidence, order, sets, options.horizon);
+  PairVisitor keep;
+  if (options.keep_pairs) {
+    keep = [&](std::size_t set, const PairInterval& pair) {
+      CertifiedPair& kept = part.pairs.emplace_back(pair_of(evidence, sets[set], pair));
+      kept.seed = seed;
+      kept.set = set;
+    };
+  }
+  const CertifiedCapture found = certify(evidence, order, sets, options.horizon, keep);
   if (found.contradiction) {
     part.contradicted = {contradicted(seed, evidence, order, *found.contradiction)};
   } else {
     add_sets(found, sets, evidence, part);
   }
+  std::ranges::stable_sort(part.pairs, {}, &CertifiedPair::set);
   return part;
 }
 
@@ -258,6 +240,7 @@ CertificateRow row_of(const std::string& pipeline, std::span<CapturePart> parts,
     ++row.captures;
     std::ranges::move(part.contradicted, std::back_inserter(row.contradicted));
     std::ranges::copy(part.apart_ms, std::back_inserter(row.apart_ms));
+    std::ranges::move(part.pairs, std::back_inserter(row.pairs));
     row.impossible_sets += part.impossible_sets;
     row.frames += part.frames;
     row.frames_outside += part.frames_outside;
@@ -281,13 +264,7 @@ CertificateRow row_of(const std::string& pipeline, std::span<CapturePart> parts,
 
 }  // namespace
 
-double CertificateRow::certified_ms(double p) const {
-  if (apart_ms.empty()) return kNan;
-  // Between two unknown ones there is no interpolation.
-  const double above =
-      apart_ms[static_cast<std::size_t>(std::ceil(p * static_cast<double>(apart_ms.size() - 1)))];
-  return above == kUnknown ? kUnknown : quantile_of_sorted(apart_ms, p);
-}
+double CertificateRow::certified_ms(double p) const { return quantile_of_bounds(apart_ms, p); }
 
 double CertificateRow::share_within() const {
   if (apart_ms.empty()) return kNan;
@@ -297,6 +274,7 @@ double CertificateRow::share_within() const {
 CertificateRun certify_pipelines(const scenarios::Scenario& scenario,
                                  const SourceFactory& make_source,
                                  const CertificateOptions& options, const Progress& progress) {
+  check_certifiable(scenario);
   const std::vector<PipelineChoice> choices = choose_pipelines(scenario, options.pipelines);
   std::vector<CapturePart> parts(choices.size() * options.seeds);
   std::mutex mutex;

@@ -13,13 +13,14 @@
 // the rest can make.
 //
 // Errors: what evaluate() throws; a capture that fails is a row's problem. Order and values do not
-// depend on the number of threads. Memory: a row's sets, 8 bytes each, and a capture's evidence for
-// each thread.
+// depend on the number of threads. Memory: a row's sets, 8 bytes each, 72 bytes a pair that is
+// kept, and a capture's evidence for each thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct CertificateOptions {
   const std::atomic<bool>* cancel = nullptr;
   Horizon horizon = Horizon::kWhole;
   double within_ms = 1;
+  bool keep_pairs = false;  // CertificateRow::pairs
   Assumptions assumptions{};
 };
 
@@ -53,6 +55,16 @@ struct WeakTie {
   double drift_share = 0;
 };
 
+// Two frames of a set, and how much later the second was exposed.
+struct CertifiedPair {
+  std::uint64_t seed = 0;
+  std::size_t set = 0;  // of the capture, in the order of their emission
+  std::uint32_t first_camera = 0, second_camera = 0;
+  DeviceTime first_sensor{}, second_sensor{};  // unwrapped
+  double least_ms = 0, most_ms = 0;            // surely; infinite: unknown
+  std::optional<double> truth_ms{};
+};
+
 // A capture whose facts contradict each other.
 struct ContradictedCapture {
   std::uint64_t seed = 0;
@@ -66,7 +78,8 @@ struct CertificateRow {
   std::string problem{};  // why there is nothing; empty: nothing is wrong
   std::uint64_t captures = 0;
   std::vector<ContradictedCapture> contradicted{};
-  std::vector<double> apart_ms{};   // of each set, ascending; infinite: unknown
+  std::vector<double> apart_ms{};  // of each set, ascending; infinite: unknown
+  std::vector<CertifiedPair> pairs{};
   std::size_t within = 0;           // sets within CertificateOptions::within_ms
   std::size_t impossible_sets = 0;  // that no pulses of a common trigger explain
   std::size_t frames = 0;           // of the sets, whose bounds the truth could break
