@@ -61,7 +61,7 @@ class CertifiedScoring final : public RecordingSink {
 
 // Infinite where nothing bounds it.
 double bound_ms(Picoseconds apart);
-// Of sets' bounds, ascending; infinite where the one above is; NaN without sets.
+// A quantile of bounds in ascending order; infinite where the one above it is; NaN without bounds.
 double quantile_of_bounds(const std::vector<double>& apart_ms, double p);
 
 }  // namespace simbench::evaluation
