@@ -205,12 +205,15 @@ void PtpSlave::take_delay_response(const PtpMessage& response) {
 }
 
 void PtpSlave::take_peer_delay() {
-  // The follow-up brings the request's correction back. Each is taken out of its own way: out of
-  // the other it would put an arrival before the departure.
-  const std::int64_t t2 = peer_response_->message.time_ns - correction_of(*peer_follow_up_).count();
-  const std::int64_t t4 = peer_response_->stamp - correction_of(peer_response_->message).count();
-  offset_.add_peer_delay(request_->stamp, t2, peer_follow_up_->time_ns, t4);
-  report(request_->stamp, t2, peer_follow_up_->time_ns, t4);
+  // The follow-up brings the request's correction back. The delay is the same whichever stamp it is
+  // taken from; what is reported has each taken out of its own way, since out of the other it would
+  // put an arrival before the departure.
+  const std::int64_t there = correction_of(*peer_follow_up_).count();
+  const std::int64_t back = correction_of(peer_response_->message).count();
+  const std::int64_t t2 = peer_response_->message.time_ns;
+  const std::int64_t t4 = peer_response_->stamp;
+  offset_.add_peer_delay(request_->stamp, t2, peer_follow_up_->time_ns, t4 - there - back);
+  report(request_->stamp, t2 - there, peer_follow_up_->time_ns, t4 - back);
   request_.reset();
   peer_response_.reset();
   peer_follow_up_.reset();

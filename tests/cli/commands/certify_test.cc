@@ -48,7 +48,7 @@ TEST_F(CertifyCommand, AnswersFirst) {
               AllOf(HasSubstr("two_way_hull: in 95 % of its sets no two frames were exposed more "
                               "than "),
                     HasSubstr("Truth: it lies within for all 120 frames that have a bound."),
-                    HasSubstr("host_rate_ppm = 50: ")));
+                    HasSubstr("host_rate_ppm = 53: ")));
 }
 
 TEST_F(CertifyCommand, JsonHasAssumptionsRowsAndTruth) {

@@ -50,7 +50,7 @@ TEST(ResultsCsv, SteeredExposuresHaveTheirColumns) {
   EXPECT_TRUE(line.starts_with("yoon2021_both,yoon2021_both,nudge,regression_30,yoon2021,2,"))
       << line;
   EXPECT_TRUE(
-      line.ends_with(",6,0.5,2,3,8,,12.5,5,0.5,,,,,,,,,,2,failed,"
+      line.ends_with(",6,0.5,2,3,8,,12.5,5,0.5,,,,,,,,,,,2,failed,"
                      "hosts were not synchronised (1 over all seeds)"))
       << line;
   std::getline(lines, line);
