@@ -49,6 +49,7 @@ struct TraceCommandOptions {
   std::string output = "-";
   std::optional<double> from_ms;
   std::optional<double> to_ms;
+  bool certify = false;
   std::uint64_t max_events = reports::TraceOptions{}.max_events;
 };
 
@@ -115,7 +116,7 @@ class Output {
 };
 
 int run_trace(const TraceCommandOptions& options) {
-  const reports::TraceOptions wanted = trace_options(options);
+  reports::TraceOptions wanted = trace_options(options);
   std::vector<std::string> pipelines;
   if (!options.pipeline.empty()) pipelines.push_back(options.pipeline);
   const scenarios::Scenario scenario =
@@ -124,6 +125,7 @@ int run_trace(const TraceCommandOptions& options) {
   const evaluation::PipelineChoice choice =
       choose(scenario, is_of_program ? scenario.pipelines.back().name : options.pipeline);
   print_warnings(scenarios::warnings(scenario));
+  if (options.certify) wanted.certify = evaluation::assumptions_of(scenario);
   Output output(options.output);
   const auto trace = watched<reports::Trace>([&](const evaluation::Progress&) {
     const auto source = app::simulated_world(scenario);
@@ -165,6 +167,9 @@ void add_trace_command(CommandLine& line) {
   command.python();
   command.format(options->format, {"chrome", "csv"});
   command.json_messages();
+  command.flag("--certify", options->certify,
+               "With each set how far its frames were exposed apart at most, for sure\n"
+               "(`simbench certify`)");
   add_window_options(command, *options);
   command.output("-o,--output", "FILE", options->output,
                  "The file, written as a whole or not at all. Default: -, standard output");

@@ -72,13 +72,18 @@ std::vector<EvidenceSet> CertifiedScoring::sets() const {
   return sets;
 }
 
-void CertifiedScoring::add_to(SeedScore& score) const {
-  constexpr double kShare = 0.95;
+std::vector<double> CertifiedScoring::bounds_ms() const {
   const FactOrder order(evidence_);
   const CertifiedCapture found = certify(evidence_, order, sets(), Horizon::kWhole);
-  if (found.contradiction) return;
-  std::vector<double> apart_ms;
-  for (const SetCertificate& set : found.sets) apart_ms.push_back(bound_ms(set.apart));
+  std::vector<double> bounds;
+  if (found.contradiction) return bounds;
+  for (const SetCertificate& set : found.sets) bounds.push_back(bound_ms(set.apart));
+  return bounds;
+}
+
+void CertifiedScoring::add_to(SeedScore& score) const {
+  constexpr double kShare = 0.95;
+  std::vector<double> apart_ms = bounds_ms();
   std::ranges::sort(apart_ms);
   const double certified_ms = quantile_of_bounds(apart_ms, kShare);
   if (std::isfinite(certified_ms)) score.certified_ms = certified_ms;

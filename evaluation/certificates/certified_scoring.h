@@ -39,6 +39,11 @@ class CertifiedScoring final : public RecordingSink {
   // The complete and partial sets. A frame belongs to one; of frames of one camera with one stamp,
   // as after a reset of its clock, the first that belongs to none is meant. O(n log n).
   std::vector<EvidenceSet> sets() const;
+  // By set, in the order of their emission: no two of its frames are further apart; infinite where
+  // nothing bounds it; empty if facts contradict each other.
+  std::vector<double> bounds_ms() const;
+  // Who takes the scorer's place for one observer passes its sets on to this.
+  ScoreObserver& observer() { return collected_; }
   // Sets SeedScore::certified_ms; NaN where that is unknown or facts contradict each other.
   void add_to(SeedScore& score) const;
 

@@ -62,6 +62,7 @@ def trace(
     from_ms: Optional[float] = None,
     to_ms: Optional[float] = None,
     max_events: int = 200_000,
+    certify: bool = False,
     program: Union[str, Sequence[str]] = (),
     program_log: Optional[Path] = None,
     python: Union[Path, Sequence[Path]] = (),
@@ -74,6 +75,7 @@ def trace(
     format: "chrome", for the Perfetto UI, or "csv", for PlotJuggler.
     from_ms, to_ms: only events that begin then, in ms of true time since the start of host
         synchronisation; max_events: how many at most.
+    certify: with each set how far its frames were exposed apart at most, for sure.
     program, program_log, python: as for run().
     progress: show it; None: where tqdm is installed and somebody looks.
     """
@@ -81,7 +83,7 @@ def trace(
     names, changes = changes_of("trace", scenario, [pipeline] if pipeline else None, set)
     options = words_of(
         scenario=scenario, pipeline=names, seed=seed, set=changes, format=format, from_ms=from_ms,
-        to_ms=to_ms, max_events=max_events, program=repeated("program", program),
+        to_ms=to_ms, max_events=max_events, certify=bool(certify), program=repeated("program", program),
         program_log=program_log,
     )  # fmt: skip
     return Trace(run_command("trace", options, progress=progress), format)

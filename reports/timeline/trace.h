@@ -17,6 +17,7 @@
 
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
+#include "evaluation/certificates/assumptions.h"
 #include "recording/recording.h"
 #include "recording/world_observer.h"
 #include "scenarios/derivation.h"
@@ -28,6 +29,7 @@ struct TraceOptions {
   TrueTime from = TrueTime::min();
   TrueTime to = TrueTime::max();
   std::uint64_t max_events = 200'000;
+  std::optional<evaluation::Assumptions> certify{};  // empty: sets have no certificates
 };
 
 struct TraceFrame {
@@ -43,9 +45,10 @@ struct TraceSet {
   std::vector<std::uint32_t> frames;  // the kept ones
   std::size_t members = 0;
   bool complete = false;
-  Nanoseconds range{};  // of the members' stamps
-  TrueTime begin{};     // its first frame is delivered
-  TrueTime end{};       // it is emitted, at least 1 ns after the last one is delivered
+  Nanoseconds range{};                   // of the members' stamps
+  std::optional<double> certified_ms{};  // no two members are further apart; empty: unknown
+  TrueTime begin{};                      // its first frame is delivered
+  TrueTime end{};  // it is emitted, at least 1 ns after the last one is delivered
 };
 
 // A host's system clock minus the master's.
@@ -151,6 +154,7 @@ inline constexpr std::uint32_t kTraceCsvPlaces = 100;
 //   cameraN/stamp_error_us       the pipeline's stamp minus the correct one, at the delivery
 //   gathering/stamps_range_us    of the set emitted then
 //   gathering/frames             in that set
+//   gathering/certified_ms       how far its frames were exposed apart at most, for sure
 //
 // Two values of a series at one instant: the later is shown. Columns are those of the first
 // kTraceCsvPlaces hosts and cameras; the rest is left out.

@@ -150,8 +150,10 @@ class ChromeWriter {
       add(R"(,"cat":"pulse","name":"capture starts")");
     } else if (event.what == TraceWhat::kSet) {
       const TraceSet& set = trace_.sets[event.subject];
-      add(R"(,"cat":"set","name":"{}","args":{{"frames":{},"stamps_range_us":{:.3f}}})",
+      add(R"(,"cat":"set","name":"{}","args":{{"frames":{},"stamps_range_us":{:.3f})",
           set.complete ? "set" : "partial set", set.members, us(set.range));
+      if (set.certified_ms) add(R"(,"certified_ms":{:.6f})", *set.certified_ms);
+      add("}}");
     } else if (event.what == TraceWhat::kClock) {
       add(R"(,"cat":"clock","name":"clock error, TE","args":{{"us":{:.3f}}})",
           us(trace_.clocks[event.subject].error));

@@ -24,7 +24,8 @@ enum class TraceSeries : std::uint8_t {
   kLatency,
   kStampError,
   kRange,
-  kFrames
+  kFrames,
+  kCertified
 };
 struct TraceColumn {
   std::uint8_t group = 0;
@@ -52,6 +53,8 @@ std::string column_name(const TraceColumn& column) {
       return fmt::format("camera{}{}/stamp_error_us", column.place, colour);
     case TraceSeries::kRange:
       return "gathering/stamps_range_us";
+    case TraceSeries::kCertified:
+      return "gathering/certified_ms";
     case TraceSeries::kFrames:
       break;
   }
@@ -137,6 +140,9 @@ void write_trace_csv(const Trace& trace, std::ostream& out) {
   for (const TraceSet& set : trace.sets) {
     table.add(set.end, {3, 0, false, TraceSeries::kRange}, to_us(set.range));
     table.add(set.end, {3, 0, false, TraceSeries::kFrames}, static_cast<double>(set.members));
+    if (set.certified_ms) {
+      table.add(set.end, {3, 0, false, TraceSeries::kCertified}, *set.certified_ms);
+    }
   }
   table.write(out);
 }

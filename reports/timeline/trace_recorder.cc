@@ -30,6 +30,14 @@ TraceRecorder::TraceRecorder(evaluation::PipelineScorer& scorer, StreamKind scor
   scorer.watch(*this);
 }
 
+TraceRecorder::TraceRecorder(evaluation::CertifiedScoring& certified,
+                             evaluation::PipelineScorer& scorer, StreamKind scored,
+                             const TraceOptions& options)
+    : ForwardingSink(certified), scored_(scored), certified_(&certified) {
+  trace_.options = options;
+  scorer.watch(*this);
+}
+
 void TraceRecorder::on_start(const RigLayout& layout) {
   trace_.hosts = layout.hosts;
   trace_.cameras = layout.cameras;
@@ -137,6 +145,7 @@ void TraceRecorder::on_stamp(const GatherFrame& frame) {
 }
 
 void TraceRecorder::on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) {
+  if (certified_ != nullptr) certified_->observer().on_set(set, complete, now);
   KeptSet kept = {.members = {}, .complete = complete, .range = {}, .now = now};
   const auto [first, last] = std::minmax_element(
       set.begin(), set.end(),
@@ -222,10 +231,18 @@ Trace record_trace(const scenarios::Scenario& scenario, const evaluation::Pipeli
                    std::uint64_t seed, RecordingSource& source, const TraceOptions& options) {
   const evaluation::ScorerSetup setup = evaluation::scorer_setup(scenario, choice);
   evaluation::PipelineScorer scorer(setup);
-  TraceRecorder recorder(scorer, setup.stream, options);
+  std::optional<evaluation::CertifiedScoring> certified;
+  std::optional<TraceRecorder> recorder;
+  if (options.certify) {
+    evaluation::check_certifiable(scenario);
+    certified.emplace(scorer, *options.certify, setup.stream);
+    recorder.emplace(*certified, scorer, setup.stream, options);
+  } else {
+    recorder.emplace(scorer, setup.stream, options);
+  }
   evaluation::SeedScore score =
-      evaluation::score_run(source, choice, seed, scorer, recorder, &recorder);
-  Trace trace = recorder.finish();
+      evaluation::score_run(source, choice, seed, scorer, *recorder, &*recorder);
+  Trace trace = recorder->finish();
   trace.program_failures = std::move(score.program_failures);
   trace.scenario = scenario.name;
   trace.derivation = scenario.derivation;
@@ -319,11 +336,15 @@ void TraceRecorder::resolve_stamps() {
 }
 
 void TraceRecorder::resolve_sets() {
-  for (const KeptSet& kept : sets_) {
+  std::vector<double> bounds_ms;
+  if (certified_ != nullptr) bounds_ms = certified_->bounds_ms();
+  for (std::size_t i = 0; i < sets_.size(); ++i) {
+    const KeptSet& kept = sets_[i];
     TraceSet set = {.frames = {},
                     .members = kept.members.size(),
                     .complete = kept.complete,
                     .range = kept.range,
+                    .certified_ms = {},
                     .begin = TrueTime::max(),
                     .end = TrueTime::min()};
     for (const Member& member : kept.members) {
@@ -337,6 +358,7 @@ void TraceRecorder::resolve_sets() {
       set.end =
           std::max({set.end, delivered + (kept.now - member.arrival), delivered + Nanoseconds(1)});
     }
+    if (i < bounds_ms.size() && std::isfinite(bounds_ms[i])) set.certified_ms = bounds_ms[i];
     if (!set.frames.empty()) trace_.sets.push_back(std::move(set));
   }
 }

@@ -15,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "evaluation/certificates/certified_scoring.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/score_observer.h"
@@ -31,6 +32,9 @@ class TraceRecorder final : public ForwardingSink,
  public:
   // Watches `scorer`, which must outlive this; `scored`: the stream that it scores.
   TraceRecorder(evaluation::PipelineScorer& scorer, StreamKind scored, const TraceOptions& options);
+  // The sets have certificates. `certified` watched `scorer` and must outlive this.
+  TraceRecorder(evaluation::CertifiedScoring& certified, evaluation::PipelineScorer& scorer,
+                StreamKind scored, const TraceOptions& options);
 
   void on_start(const RigLayout& layout) override;
   void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
@@ -105,6 +109,7 @@ class TraceRecorder final : public ForwardingSink,
   void resolve_sets();
 
   StreamKind scored_;
+  evaluation::CertifiedScoring* certified_ = nullptr;
   Trace trace_;
   std::uint64_t kept_events_ = 0;
   TrueTime last_seen_{};

@@ -86,6 +86,20 @@ TEST_F(TraceBounds, CsvHasOneTimeThatGoesUp) {
   EXPECT_GT(rows, 200U);
 }
 
+// Each set of a rig whose clocks are read has a bound, in both formats.
+TEST_F(TraceBounds, SetsHaveCertificates) {
+  const std::vector<std::string> asked = {"--certify", "--pipeline", "chrony", "--set",
+                                          "/timeline/frames=20"};
+  std::vector<std::string> as_csv = asked;
+  as_csv.insert(as_csv.end(), {"--format", "csv"});
+  const ProgramResult csv = trace("18cam_6host_45fps_lan", as_csv);
+  ASSERT_EQ(csv.status, 0) << csv.err;
+  EXPECT_THAT(csv.out.substr(0, csv.out.find('\n')), HasSubstr(",gathering/certified_ms"));
+  const ProgramResult chrome = trace("18cam_6host_45fps_lan", asked);
+  ASSERT_EQ(chrome.status, 0) << chrome.err;
+  EXPECT_THAT(chrome.out, HasSubstr(R"(,"certified_ms":)"));
+}
+
 TEST_F(TraceBounds, BadInputIsNamedAndNothingIsWritten) {
   const auto refuses = [this](std::vector<std::string> more, const std::string& part) {
     const ProgramResult result = trace("6cam_2host_30fps", std::move(more));

@@ -31,16 +31,11 @@ std::size_t expect_truth_within(const scenarios::Scenario& scenario,
   return frames;
 }
 
-// Their captures take minutes, and are of the kinds of others.
-bool takes_minutes(const std::string& name) {
-  return name == "scale_18000cam_6000host_45fps" || name == "6cam_gige_ptp_60fps";
-}
-
 TEST(CertifiedWorlds, TheTruthLiesWithinInEveryBuiltInWorld) {
   std::size_t frames = 0;
   for (const scenarios::BuiltinScenario& builtin : scenarios::builtin_scenarios()) {
-    if (takes_minutes(builtin.name)) continue;
     const scenarios::Scenario scenario = scenarios::load_scenario(builtin.name);
+    if (scenario.cameras.count > 1000) continue;  // too large to certify
     std::vector<std::string> modelled;
     for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
       if (!pipeline.programs) modelled.push_back(pipeline.name);

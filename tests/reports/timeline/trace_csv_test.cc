@@ -49,6 +49,20 @@ TEST(TraceCsv, EverySeriesHasItsCellsAndTimeGoesUp) {
             "0.012500000,,,,,0.000,1.000\n");
 }
 
+TEST(TraceCsv, SetsHaveTheirCertificates) {
+  Trace trace;
+  trace.sets = {{.frames = {},
+                 .members = 2,
+                 .complete = true,
+                 .range = Nanoseconds(0),
+                 .certified_ms = 0.75,
+                 .begin = TrueTime(from_ms(12)),
+                 .end = TrueTime(from_ms(12.5))}};
+  EXPECT_EQ(csv(trace),
+            "time_s,gathering/stamps_range_us,gathering/frames,gathering/certified_ms\n"
+            "0.012500000,0.000,2.000,0.750\n");
+}
+
 TEST(TraceCsv, StreamsHaveColumnsOfTheirOwnAndOfTwoValuesTheLaterIsShown) {
   Trace trace;
   trace.cameras = {{0}};
