@@ -36,7 +36,7 @@ CertifiedRig rig() {
   return made;
 }
 
-void poll_all(OnlineCertificates& certificates, Nanoseconds at) {
+void poll_all(OnlineCertificates& certificates, Microseconds at) {
   for (std::uint32_t camera = 0; camera < kCameras; ++camera) {
     certificates.on_poll(camera, {.device = DeviceTime(at),
                                   .t0_steady = SteadyTime(at - kWay),
@@ -44,7 +44,7 @@ void poll_all(OnlineCertificates& certificates, Nanoseconds at) {
   }
 }
 
-void exchange_all(OnlineCertificates& certificates, Nanoseconds at) {
+void exchange_all(OnlineCertificates& certificates, Microseconds at) {
   const HostTime now(at);
   for (std::uint32_t host = 1; host < kHosts; ++host) {
     certificates.on_exchange(
@@ -56,7 +56,7 @@ void certify(benchmark::State& state, const Load& load) {
   OnlineCertificates certificates(rig());
   for (std::uint32_t host = 0; host < kHosts; ++host) certificates.on_adjustment({.host = host});
   std::vector<OnlineCertificates::Ticket> tickets;
-  Nanoseconds at = kPeriod;
+  Microseconds at = kPeriod;
   exchange_all(certificates, at);
   poll_all(certificates, at);
   for (auto iteration : state) {
@@ -82,7 +82,7 @@ void gather(benchmark::State& state) {
   const std::unique_ptr<Gatherer> gatherer =
       make_yoon2021_gatherer({.sources = kCameras, .period = kPeriod, .interval = kPeriod / 2});
   NoSets sink;
-  Nanoseconds at = kPeriod;
+  Microseconds at = kPeriod;
   for (auto iteration : state) {
     at += kPeriod;
     for (std::uint32_t camera = 0; camera < kCameras; ++camera) {
@@ -96,10 +96,10 @@ void gather(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * kCameras);
 }
 
+BENCHMARK_CAPTURE(certify, frames, Load{});
+BENCHMARK_CAPTURE(certify, polls, Load{.polls = true});
+BENCHMARK_CAPTURE(certify, exchanges, Load{.polls = true, .exchanges = true});
+BENCHMARK(gather)->Name("gather/yoon2021");
+
 }  // namespace
 }  // namespace simbench
-
-BENCHMARK_CAPTURE(simbench::certify, frames, {});
-BENCHMARK_CAPTURE(simbench::certify, polls, {.polls = true});
-BENCHMARK_CAPTURE(simbench::certify, exchanges, {.polls = true, .exchanges = true});
-BENCHMARK(simbench::gather)->Name("gather/yoon2021");
