@@ -34,18 +34,19 @@ std::size_t expect_truth_within(const scenarios::Scenario& scenario,
 TEST(CertifiedWorlds, TheTruthLiesWithinInEveryBuiltInWorld) {
   std::size_t frames = 0;
   for (const scenarios::BuiltinScenario& builtin : scenarios::builtin_scenarios()) {
-    const scenarios::Scenario scenario = scenarios::load_scenario(builtin.name);
+    const scenarios::Scenario scenario =
+        scenarios::load_scenario(builtin.name, {{"/timeline/frames", "90"}});
     if (scenario.cameras.count > 1000) continue;  // too large to certify
     std::vector<std::string> modelled;
     for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
-      if (!pipeline.programs) modelled.push_back(pipeline.name);
+      if (pipeline.host_sync != "programs") modelled.push_back(pipeline.name);
     }
     if (modelled.empty()) continue;
     const CertificateOptions options{.pipelines = modelled,
                                      .assumptions = assumptions_of(scenario)};
     frames += expect_truth_within(scenario, options, builtin.name);
   }
-  EXPECT_GT(frames, 2'000'000U);
+  EXPECT_GT(frames, 500'000U);
 }
 
 std::string between(sim::RandomStream& draw, double least, double most) {
@@ -89,7 +90,7 @@ TEST(CertifiedWorlds, TheTruthLiesWithinInWorldsAtRandom) {
         .pipelines = pipelines, .first_seed = world + 1, .assumptions = assumptions_of(scenario)};
     frames += expect_truth_within(scenario, options, fmt::format("{}, world {}", base, world));
   }
-  EXPECT_GT(frames, 100'000U);
+  EXPECT_GT(frames, 30'000U);
 }
 
 }  // namespace
