@@ -110,7 +110,8 @@ struct CertifiedSettings {
     parameters.number("camera_rate_ppm", camera_rate_ppm, 0, 1e5,
                       "rate error of a camera's clock, at most", kDataSheets);
     parameters.number("host_stamp_error_us", host_stamp_error_us, 0, 1e6,
-                      "error of a host's stamp, at most, either way", "assumption");
+                      "error of a host's stamp beyond its clock's granularity, at most, either way",
+                      "assumption");
     parameters.number("estimated_stamp_error_us", estimated_stamp_error_us, 0, 1e6,
                       "that of a stamp which the host_sync estimated, as two_way and cards do; 0: "
                       "such exchanges prove nothing",
@@ -137,14 +138,15 @@ std::vector<GatheringEntry> gathering_certified() {
       CertifiedSettings{}, [](const CertifiedSettings& settings, const GatheringSetup& setup) {
         const bool knows_hosts = !setup.host_of_source.empty();
         return make_certified_gatherer(
-            setup, {.hosts = knows_hosts ? setup.hosts : 1,
-                    .host_of_camera = knows_hosts ? setup.host_of_source
-                                                  : std::vector<std::uint32_t>(setup.sources),
-                    .host_rate_ppm = settings.host_rate_ppm,
-                    .camera_rate_ppm = settings.camera_rate_ppm,
-                    .host_stamp_error = from_us(settings.host_stamp_error_us),
-                    .estimate_error = settings.estimate_error(),
-                    .sensor_stamp_error = from_us(settings.sensor_stamp_error_us)});
+            setup,
+            {.hosts = knows_hosts ? setup.hosts : 1,
+             .host_of_camera =
+                 knows_hosts ? setup.host_of_source : std::vector<std::uint32_t>(setup.sources),
+             .host_rate_ppm = settings.host_rate_ppm,
+             .camera_rate_ppm = settings.camera_rate_ppm,
+             .host_stamp_error = from_us(settings.host_stamp_error_us) + setup.host_clock_step,
+             .estimate_error = settings.estimate_error(),
+             .sensor_stamp_error = from_us(settings.sensor_stamp_error_us)});
       })};
 }
 

@@ -61,10 +61,11 @@ struct GatheringSetup {
   Nanoseconds interval{};  // T_int, largest range of a set
   // Frames that may wait per source, at least 1; empty: the policy's own.
   std::optional<std::uint32_t> queue_limit{};
-  // How many hosts there are, and that of each source (empty: one host has all); for gatherers that
-  // want evidence.
+  // For gatherers that want evidence: how many hosts there are, that of each source (empty: one
+  // host has all), and how coarse a reading of a host's system clock is.
   std::uint32_t hosts = 0;
   std::vector<std::uint32_t> host_of_source{};
+  Nanoseconds host_clock_step{};
   // What the trigger's pulses are, if they are coded; else null.
   std::shared_ptr<const CodedPulses> pulses{};
 };

@@ -470,10 +470,14 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   }
   count_unequal_rates(scenario, setup);
   const std::shared_ptr<const CodedPulses> pulses = coded_pulses(scenario);
-  setup.make_gatherer = [chosen = choice.gathering, pulses](GatheringSetup gathering) {
-    gathering.pulses = pulses;
-    return chosen.make(gathering);
-  };
+  const scenarios::HostClockModel& clock = scenario.hosts.clock;
+  setup.make_gatherer =
+      [chosen = choice.gathering, pulses,
+       step = from_ms(clock.tick_ms + clock.resolution_ms)](GatheringSetup gathering) {
+        gathering.pulses = pulses;
+        gathering.host_clock_step = step;
+        return chosen.make(gathering);
+      };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.can_be_made()) {
     setup.make_estimator = [chosen = choice.device_time, variants = choice.device_time_variants,

@@ -136,6 +136,9 @@ std::vector<std::string> summary_legend(const Results& results) {
   if (std::ranges::any_of(results.rows, evaluation::has_single_camera)) {
     lines.emplace_back(kSingleCameraLegend);
   }
+  if (!certified_fields(results).empty()) {
+    lines.emplace_back(column_of(evaluation::metric("certified_ms")).legend);
+  }
   for (const std::string& line :
        {published_amd_text(results), unverified_legend(results), asymmetry_line(results)}) {
     if (!line.empty()) lines.push_back(line);

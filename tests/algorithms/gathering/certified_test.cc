@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "algorithms/gathering/gatherers.h"
+#include "algorithms/registry.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 
 namespace simbench {
@@ -40,6 +41,27 @@ TEST(CertifiedGatherer, WithoutReadingsNothingIsSure) {
   push_two(*gatherer, out);
   EXPECT_TRUE(out.sets.empty());
   EXPECT_EQ(gatherer->discarded(), 40U);
+}
+
+// Two hosts that an exchange ties to 0.2 ms, if their clocks are read as finely.
+TEST(CertifiedGatherer, ACoarseSystemClockMakesNothingSure) {
+  const GatheringEntry* entry = find_algorithm<GatheringEntry>("certified");
+  ASSERT_NE(entry, nullptr);
+  for (const double step_ms : {0.0, 15.625}) {
+    GatheringSetup setup = short_setup(2);
+    setup.hosts = 2;
+    setup.host_of_source = {0, 1};
+    setup.host_clock_step = from_ms(step_ms);
+    const auto gatherer = entry->make(check_parameters(entry->info.parameters, {}), setup);
+    for (std::uint32_t host : {0U, 1U}) gatherer->on_adjustment({.host = host});
+    for (std::uint32_t source : {0U, 1U}) gatherer->on_poll(source, {});
+    const HostTime asked(from_ms(-0.1));
+    const HostTime answered(from_ms(0.1));
+    gatherer->on_exchange(1, {.peer = 0, .t1 = asked, .t2 = asked, .t3 = asked, .t4 = answered});
+    CollectedSets out;
+    push_two(*gatherer, out);
+    EXPECT_EQ(out.sets.size(), step_ms > 0 ? 0U : 20U) << step_ms;
+  }
 }
 
 // The stamps agree, the exposures do not: a camera a whole period late by its own clock.
