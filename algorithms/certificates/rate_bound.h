@@ -15,6 +15,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <ratio>
 
@@ -26,7 +27,11 @@ namespace simbench {
 
 using Picoseconds = std::chrono::duration<std::int64_t, std::pico>;
 
-constexpr double to_ms(Picoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
+// Takes picoseconds alone: other durations are those of ports/time.h.
+template <std::same_as<Picoseconds> Duration>
+constexpr double to_ms(Duration d) {
+  return static_cast<double>(d.count()) * 1e-9;
+}
 
 class RateBound {
  public:
