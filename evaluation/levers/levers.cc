@@ -354,8 +354,9 @@ class LeverSearch {
     std::vector<Override> sets = trial.sets;
     if (!is_as_before) {
       if (!keeps_name) trial.pipeline.name = joined_stages(trial.pipeline, "+");
-      sets.push_back(keeps_name ? Override{"/pipelines", "[" + pipeline_json(trial.pipeline) + "]"}
-                                : Override{"/pipelines/-", pipeline_json(trial.pipeline)});
+      sets.push_back(
+          keeps_name ? Override{"/pipelines", fmt::format("[{}]", pipeline_json(trial.pipeline))}
+                     : Override{"/pipelines/-", pipeline_json(trial.pipeline)});
     }
     options.pipelines = {trial.pipeline.name};
     try {
