@@ -82,7 +82,8 @@ Table paper_table(const Results& results) {
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
-  append(fields, scored_seeds_field(pointers_to(results.rows), table_metrics(&TablePlaces::paper)));
+  append(fields, scored_seeds_field(pointers_to(results.rows),
+                                    with_certificates(table_metrics(&TablePlaces::paper))));
   for (const Metric* metric : table_metrics(&TablePlaces::paper)) {
     append(fields, metric_fields(*metric));
     if (published && metric->id == std::string_view("amd_ms")) {
@@ -168,7 +169,8 @@ std::vector<std::string> results_legend(const Results& results) {
   const auto lacks_seeds = [&results](int TablePlaces::*table) {
     return !scored_seeds_field(pointers_to(results.rows), table_metrics(table)).empty();
   };
-  if (lacks_seeds(&TablePlaces::paper) || lacks_seeds(&TablePlaces::truth) ||
+  if (lacks_seeds(&TablePlaces::paper) || lacks_seeds(&TablePlaces::certificates) ||
+      lacks_seeds(&TablePlaces::truth) ||
       (gatherings_differ(results) && lacks_seeds(&TablePlaces::sets))) {
     lines.emplace_back(kScoredSeedsLegend);
   }
@@ -353,6 +355,12 @@ std::optional<Block> search_block(const Results& results) {
                          "frames and time of a search, the largest of any camera and seed; wrong "
                          "place: the probability that the search itself states "
                          "(docs/coded_trigger.md section 4)."}};
+}
+
+std::vector<const Metric*> with_certificates(std::vector<const Metric*> metrics) {
+  const std::vector<const Metric*> more = table_metrics(&TablePlaces::certificates);
+  metrics.insert(metrics.end(), more.begin(), more.end());
+  return metrics;
 }
 
 RowFields certified_fields(const Results& results) {

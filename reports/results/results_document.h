@@ -38,6 +38,9 @@ std::vector<std::string> results_head(const evaluation::Results& results,
 std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
 // What stands beside AMD where captures were certified; none where none was.
 std::vector<Field<evaluation::Row>> certified_fields(const evaluation::Results& results);
+// The metrics of a table that has these beside AMD: for the count of its seeds.
+std::vector<const evaluation::Metric*> with_certificates(
+    std::vector<const evaluation::Metric*> metrics);
 
 // What each row is among these: the best, failed, a limit, a reference.
 Field<evaluation::Row> standing_field(const std::vector<const evaluation::Row*>& rows,

@@ -66,7 +66,7 @@ RowFields summary_fields(const Results& results, const std::vector<const Row*>& 
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
-  const RowFields seeds = scored_seeds_field(rows, summary_metrics());
+  const RowFields seeds = scored_seeds_field(rows, with_certificates(summary_metrics()));
   fields.insert(fields.end(), seeds.begin(), seeds.end());
   for (const Metric* metric : summary_metrics()) {
     add_metric(*metric, fields);

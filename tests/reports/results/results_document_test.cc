@@ -259,6 +259,20 @@ yoon2021_both  3.50 ms  [3.00, 4.00] ms  2.25 ms  [2.00, 2.50] ms  5.75 ms  1.00
   EXPECT_THAT(text, HasSubstr("t_l, t_t: network and time delay as the slaves measured them"));
 }
 
+// Beside AMD where captures were certified; a seed that nothing bounds is not passed over silently.
+TEST(Table, CertificatesStandBesideAmdWithTheirSeeds) {
+  evaluation::Results results = sample_results();
+  EXPECT_THAT(table(results, ""), Not(HasSubstr("certified")));
+  results.rows[0].certified_ms = series(2, 3);
+  const std::string whole = table(results, "");
+  EXPECT_THAT(whole, HasSubstr("certified: no two frames of 95 % of the sets"));
+  EXPECT_THAT(whole, HasSubstr("2.50 ms"));
+  EXPECT_THAT(whole, Not(HasSubstr("1-2 of 2")));
+  results.rows[0].certified_ms = {.values = {2, kNaN}, .median = 2, .p05 = 2, .p95 = 2};
+  EXPECT_THAT(table(results, ""), HasSubstr("1-2 of 2"));
+  EXPECT_THAT(table(results, ""), HasSubstr(kScoredSeedsLegend));
+}
+
 TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {
   evaluation::Results results = sample_results();
   results.rows[0].published.reset();
