@@ -16,6 +16,7 @@
 #include "recording/dataset_folder.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/loader.h"
+#include "sim/programs/kernel_clock.h"
 
 namespace simbench::app {
 namespace {
@@ -150,6 +151,11 @@ RecordedRun::RecordedRun(const std::string& folder)
   }
   first_seed_ = first->seed;
   seeds_ = last->seed - first->seed + 1;
+}
+
+Nanoseconds RecordedRun::calendar_zero() const {
+  const bool is_simulated = folder_ && folder_->description().backend == "sim";
+  return Nanoseconds(is_simulated ? sim::kEpochNs : 0);
 }
 
 RecordedRun::RecordedRun(std::vector<std::string> files, RecordedStreams recorded,

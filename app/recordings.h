@@ -73,6 +73,9 @@ class RecordedRun {
   // scenarios::InputError for one that was not recorded.
   std::vector<std::string> chosen(const std::vector<std::string>& pipelines) const;
   std::uint64_t first_seed() const { return first_seed_; }
+  // What a program's calendar says, since 1970, where a host's clock reads 0: a simulated world has
+  // one of its own.
+  Nanoseconds calendar_zero() const;
   std::uint64_t seeds() const { return seeds_; }
   // Plays the captures of these pipelines; `choices` and this outlive it. Refuses a pipeline whose
   // needs the recording lacks (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kFrameKind = "frame";
 // The kinds of RecordingEvent, in its order.
 constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
-    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays", "program"};
+    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays", "program", "pps"};
 static_assert(!kKinds.back().empty(), "every event has a kind");
 
 template <class Value, class Event>
@@ -122,6 +122,12 @@ void members(const auto& form, Any<ProgramFailure> auto& failure) {
   form.inner("how", failure.how);
   form.inner("last_words", failure.last_words);
   form("log", failure.log);
+}
+
+void members(const auto& form, Any<PulseSighting> auto& sighting) {
+  form("host", sighting.host);
+  form("seen_steady_ns", sighting.seen);
+  form("gnss_ns", sighting.gnss);
 }
 
 constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamKind::kDepth),

@@ -117,6 +117,14 @@ struct ExchangeEvent {
   Exchange exchange;
 };
 
+// A second of GNSS time as a host's PPS line showed it: the receiver's message says which second,
+// the interrupt came some time later.
+struct PulseSighting {
+  std::uint32_t host = 0;
+  SteadyTime seen{};
+  Nanoseconds gnss{};  // of the pulse; a zero of its own, the same for all hosts
+};
+
 // Whatever a capture reports besides frames:
 //
 //   PulseTruth       a trigger pulse and the errors of the clocks then; simulated captures only
@@ -126,6 +134,7 @@ struct ExchangeEvent {
 //   SyncOutcome      how host synchronisation ended on a slave
 //   SessionDelays    what a slave measured in a pass of a session of Algorithms 1 and 2, and added
 //   ProgramFailure   a real program of a host ended too early
+//   PulseSighting    a host that reads its PPS line saw a second of GNSS time
 //   AlignmentReport  how far a steered camera is; steered captures only
 //   LedSighting      captures with a clock of LEDs only; after its frame, before the camera's next
 //
@@ -133,7 +142,7 @@ struct ExchangeEvent {
 // forwards and forks events takes it from there.
 using RecordingEvent =
     std::variant<PulseTruth, ClockAdjustment, DevicePoll, ExchangeEvent, SyncOutcome,
-                 AlignmentReport, LedSighting, SessionDelays, ProgramFailure>;
+                 AlignmentReport, LedSighting, SessionDelays, ProgramFailure, PulseSighting>;
 
 // Handles an event by its type:
 //

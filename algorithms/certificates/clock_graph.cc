@@ -21,6 +21,7 @@ void ClockGraph::grow() {
   distances_ = std::move(distances);
   stride_ = stride;
   places_.resize(stride);
+  place_in_live_.resize(stride);
   for (std::size_t i = stride; i > old_stride; --i) free_.push_back(static_cast<Point>(i - 1));
 }
 
@@ -28,13 +29,16 @@ ClockGraph::Point ClockGraph::take_place() {
   if (free_.empty()) grow();
   const Point point = free_.back();
   free_.pop_back();
+  place_in_live_[point] = static_cast<std::uint32_t>(live_.size());
+  live_.push_back(point);
   return point;
 }
 
 void ClockGraph::remove(Point point) {
-  places_[point].is_live = false;
-  std::fill_n(row(point), stride_, kUnbounded.count());
-  for (std::size_t i = 0; i < stride_; ++i) row(static_cast<Point>(i))[point] = kUnbounded.count();
+  const std::uint32_t place = place_in_live_[point];
+  live_[place] = live_.back();
+  place_in_live_[live_[place]] = place;
+  live_.pop_back();
   free_.push_back(point);
 }
 
@@ -45,19 +49,24 @@ ClockGraph::Point ClockGraph::newest(std::size_t clock) const {
 
 ClockGraph::Point ClockGraph::advance(std::size_t clock, Nanoseconds local) {
   const Point point = take_place();
-  places_[point] = {static_cast<std::uint32_t>(clock), 0, true, local};
+  places_[point] = {static_cast<std::uint32_t>(clock), 0, local};
   const Point before = std::exchange(newest_[clock], point);
-  row(point)[point] = 0;
-  if (before == kNone) return point;
+  std::int64_t* const from_here = row(point);
+  if (before == kNone) {
+    std::fill_n(from_here, stride_, kUnbounded.count());
+    for (const Point other : live_) row(other)[point] = kUnbounded.count();
+    from_here[point] = 0;
+    return point;
+  }
   const Nanoseconds step = local - places_[before].local;
   const std::int64_t ahead = rates_[clock].most(step).count();
   const std::int64_t back = -rates_[clock].least(step).count();
   const std::int64_t* const from_before = row(before);
-  std::int64_t* const from_here = row(point);
   for (std::size_t i = 0; i < stride_; ++i) {
-    const std::int64_t there = from_before[i];
-    from_here[i] = there >= kFar ? kUnbounded.count() : there + back;
-    std::int64_t* const from_other = row(static_cast<Point>(i));
+    from_here[i] = from_before[i] >= kFar ? kUnbounded.count() : from_before[i] + back;
+  }
+  for (const Point other : live_) {
+    std::int64_t* const from_other = row(other);
     const std::int64_t here = from_other[before];
     from_other[point] = here >= kFar ? kUnbounded.count() : here + ahead;
   }
@@ -80,8 +89,8 @@ bool ClockGraph::bound(Point from, Point to, Picoseconds most) {
   const std::int64_t return_way = row(to)[from];
   if (return_way < kFar && return_way + fact < 0) return false;
   const std::int64_t* const onward = row(to);
-  for (std::size_t i = 0; i < stride_; ++i) {
-    std::int64_t* const distances = row(static_cast<Point>(i));
+  for (const Point other : live_) {
+    std::int64_t* const distances = row(other);
     if (distances[from] >= kFar) continue;
     const std::int64_t there = distances[from] + fact;
     if (there >= distances[to]) continue;  // then no way over the fact is shorter
@@ -92,14 +101,6 @@ bool ClockGraph::bound(Point from, Point to, Picoseconds most) {
     }
   }
   return true;
-}
-
-std::vector<ClockGraph::Point> ClockGraph::live() const {
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (places_[i].is_live) points.push_back(static_cast<Point>(i));
-  }
-  return points;
 }
 
 }  // namespace simbench

@@ -76,7 +76,8 @@ class ClockGraph {
   // The least upper bound of t(to) - t(from); its negation bounds t(from) - t(to) from below.
   Picoseconds most(Point from, Point to) const { return Picoseconds(row(from)[to]); }
 
-  std::vector<Point> live() const;
+  // In no order.
+  const std::vector<Point>& live() const { return live_; }
   Nanoseconds local_of(Point point) const { return places_[point].local; }
   std::size_t clock_of(Point point) const { return places_[point].clock; }
 
@@ -88,7 +89,6 @@ class ClockGraph {
   struct Place {
     std::uint32_t clock = 0;
     std::uint32_t kept = 0;
-    bool is_live = false;
     Nanoseconds local{};
   };
 
@@ -104,8 +104,10 @@ class ClockGraph {
   std::vector<Point> newest_;  // by clock
   std::vector<Place> places_;
   std::vector<Point> free_;
+  std::vector<Point> live_;
+  std::vector<std::uint32_t> place_in_live_;
   std::size_t stride_ = 0;
-  std::vector<std::int64_t> distances_;  // [from][to], ps; kUnbounded beside places without a point
+  std::vector<std::int64_t> distances_;  // [from][to], ps; of a free place without a meaning
 };
 
 }  // namespace simbench

@@ -31,11 +31,14 @@ namespace simbench {
 inline constexpr Nanoseconds kRegisterStep{1000};
 inline constexpr Nanoseconds kSteadyStep{1};
 
+// A message, or a pulse that was seen: received after it was sent.
 struct HostMessage {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
   SteadyTime sent{};      // at the earliest, on the sender's clock
   SteadyTime received{};  // at the latest, on the receiver's
+  Nanoseconds slack{0};   // by which it may have been sent later than received after all
+  bool is_pulse = false;  // no message: no least delay is known of it
 };
 
 struct ExchangeMessages {
@@ -54,10 +57,10 @@ class StampedFacts {
   void add(const ClockAdjustment& adjustment);
   // `host` has reported the exchange.
   ExchangeMessages messages_of(std::uint32_t host, const Exchange& exchange) const;
-
- private:
+  // When a host's clock read what is within `error` of a stamp.
   std::optional<SteadyRange> when(std::uint32_t host, HostTime stamp, Nanoseconds error) const;
 
+ private:
   std::vector<SteadyReadings> readings_;  // by host
   Nanoseconds stamp_error_;
   std::optional<Nanoseconds> estimate_error_;

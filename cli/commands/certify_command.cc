@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/exchange_logs.h"
 #include "app/interrupt.h"
 #include "app/recordings.h"
 #include "cli/command.h"
@@ -14,6 +16,7 @@
 #include "cli/progress.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/certificate_run.h"
+#include "recording/counted.h"
 #include "recording/duration_in.h"
 #include "reports/certificates/certificate_report.h"
 #include "reports/text/output_file.h"
@@ -47,9 +50,12 @@ struct CertifyOptions {
   std::vector<std::string> sets;
   std::string within;
   std::string pairs;
+  std::vector<std::string> clock_logs;
+  std::vector<std::string> host_addresses;
   std::optional<double> required_percent;
   std::optional<double> host_rate_ppm, camera_rate_ppm, message_ms, poll_ms, arrival_ms,
-      host_stamp_ms, estimated_stamp_ms, sensor_stamp_us, trigger_hz, observed_margin_ppm;
+      host_stamp_ms, estimated_stamp_ms, sensor_stamp_us, trigger_hz, observed_margin_ppm,
+      pulse_late_us;
   bool common_trigger = false;
   double trigger_spread_us = 100;
   bool causal = false;
@@ -71,6 +77,7 @@ void set_assumptions(const CertifyOptions& options, const scenarios::Scenario& s
   set(options.sensor_stamp_us, assumed.sensor_stamp_us);
   assumed.estimated_stamp_ms = options.estimated_stamp_ms;
   assumed.observed_margin_ppm = options.observed_margin_ppm;
+  assumed.pulse_late_us = options.pulse_late_us;
   if (!options.common_trigger) return;
   const double rate_hz = options.trigger_hz.value_or(scenario.trigger.pulse_rate_hz());
   assumed.trigger = {.period_ms = 1e3 / rate_hz, .spread_ms = options.trigger_spread_us * 1e-3};
@@ -100,18 +107,39 @@ std::optional<evaluation::CertificateRun> certify(const scenarios::Scenario& sce
   });
 }
 
+// A log is of one stretch of time, so of one capture.
+void check_logs(const CertifyOptions& options, const app::RecordedRun& run) {
+  if (options.clock_logs.empty()) return;
+  const std::size_t captures = options.certificates.pipelines.size() * run.seeds();
+  if (captures <= 1) return;
+  throw scenarios::InputError(
+      fmt::format("--clock-log: found {}, allowed: one, since a log is of one stretch of time; "
+                  "--pipelines chooses it",
+                  counted(captures, "capture")));
+}
+
 std::optional<evaluation::CertificateRun> certify_recording(CertifyOptions options) {
   const app::RecordedRun run = app::recorded_run({options.input}, {}, {});
   evaluation::CertificateOptions& certificates = options.certificates;
   certificates.pipelines = run.chosen(certificates.pipelines);
   certificates.first_seed = run.first_seed();
   certificates.seeds = run.seeds();
+  check_logs(options, run);
+  app::ExchangeLogs logs = app::exchange_logs(options.clock_logs, options.host_addresses, run);
+  for (const std::string& note : logs.notes) print_note(note);
+  certificates.logs = std::move(logs.logs);
+  certificates.host_of_address = std::move(logs.host_of_address);
   const auto choices = evaluation::choose_pipelines(run.scenario(), certificates.pipelines);
   return certify(
       run.scenario(), [&] { return run.source(choices); }, options);
 }
 
 std::optional<evaluation::CertificateRun> certify_scenario(const CertifyOptions& options) {
+  if (!options.clock_logs.empty()) {
+    throw scenarios::InputError(fmt::format(
+        "--clock-log: found the scenario {}, allowed: a folder that `simbench record` wrote",
+        scenarios::shown_text(options.input)));
+  }
   const scenarios::Scenario scenario = scenarios::load_scenario(
       options.input, evaluation::with_ad_hoc_pipelines(options.input, overrides_of(options.sets),
                                                        options.certificates.pipelines));
@@ -170,6 +198,9 @@ void add_assumption_options(Command& command, CertifyOptions& options) {
   command.number("--estimated-stamp-ms", "MS", options.estimated_stamp_ms, 0, kMostMs,
                  "Largest error of a stamp that a host_sync estimated (two_way, cards, PTP's\n"
                  "program stamps). Default: exchanges with such stamps prove nothing");
+  command.number("--pulse-late-us", "US", options.pulse_late_us, 0, 1e6,
+                 "How late a host sees a pulse of its PPS line at most. Default: pulses prove\n"
+                 "nothing");
   command.number("--sensor-stamp-us", "US", options.sensor_stamp_us, 0, 1e6,
                  "Largest distance of a sensor stamp from the middle of its exposure. Default: 1\n"
                  "and 8 times the scenario's jitter");
@@ -211,6 +242,14 @@ void add_certify_command(CommandLine& line) {
   command.count("--seeds", options->certificates.seeds, "Captures of a scenario. Default: 1");
   command.seed("--first-seed", options->certificates.first_seed, "The first seed. Default: 1");
   command.jobs(options->certificates.jobs);
+  const Option logs = command.texts(
+      "--clock-log", "HOST=FILE", options->clock_logs,
+      "What a program on a host exchanged meanwhile, of a recording: ntpd's rawstats, chrony's\n"
+      "measurements.log (estimates) or refclocks.log (pulses); may be given several times");
+  command
+      .texts("--host-address", "HOST=ADDRESS", options->host_addresses,
+             "A server that these logs name is this host of the rig; others are clocks outside")
+      .needs(logs);
   command.output("--pairs", "FILE.csv", options->pairs,
                  "Also write the interval of every pair of frames of every set");
   command.format(options->format, {"table", "markdown", "latex", "json"});

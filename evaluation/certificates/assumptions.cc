@@ -60,6 +60,7 @@ Assumptions assumptions_of(const scenarios::Scenario& scenario) {
   assumed.host_stamp_ms = clock.tick_ms + clock.resolution_ms + kNanosecond_ms +
                           Assumptions::kSigmas * network.switch_clock_error_ns * kNanosecond_ms;
   assumed.arrival_stamp_ms = clock.arrival_quantum_ms + kNanosecond_ms;
+  assumed.pulse_error_us += Assumptions::kSigmas * scenario.hosts.pulse_lines.pps_jitter_sigma_us;
   double jitter_us = 0;
   for (std::size_t group = 0; group < scenarios::group_count(scenario.cameras); ++group) {
     const scenarios::Cameras cameras = scenarios::cameras_of_group(scenario.cameras, group);
@@ -89,6 +90,12 @@ std::vector<AssumptionLine> described(const Assumptions& assumed) {
   if (assumed.estimated_stamp_ms) {
     lines.push_back({"estimated_stamp_ms", *assumed.estimated_stamp_ms,
                      "error of a stamp that a protocol estimated, at most, either way"});
+  }
+  if (assumed.pulse_late_us) {
+    lines.push_back({"pulse_late_us", *assumed.pulse_late_us,
+                     "a host sees a pulse of its PPS line so late at most"});
+    lines.push_back({"pulse_error_us", assumed.pulse_error_us,
+                     "distance of such a pulse from the full second, at most, either way"});
   }
   if (assumed.observed_margin_ppm) {
     lines.push_back({"observed_margin_ppm", *assumed.observed_margin_ppm,

@@ -46,6 +46,9 @@ struct Assumptions {
   // And that of a stamp that is an estimate (Exchange::is_estimated); empty: such exchanges do not
   // count.
   std::optional<double> estimated_stamp_ms{};
+  // How late a host sees a pulse of its PPS line, at most; empty: pulses do not count.
+  std::optional<double> pulse_late_us{};
+  double pulse_error_us = 0.1;             // a pulse is so far from the full second at most
   double arrival_stamp_ms = 1e-6;          // and below it, that of an arrival
   double sensor_stamp_us = 1;              // and that of a frame from the middle of its exposure
   std::optional<CommonTrigger> trigger{};  // empty: nothing is known of when cameras expose

@@ -36,6 +36,11 @@ class CertifiedScoring final : public RecordingSink {
   void on_event(const RecordingEvent& event) override;
 
   const CaptureEvidence& evidence() const { return evidence_; }
+  // As CaptureEvidence::add().
+  void add(std::uint32_t host, const ExchangeLog& log,
+           const std::map<std::string, std::uint32_t>& host_of_address) {
+    evidence_.add(host, log, host_of_address);
+  }
   // The complete and partial sets. A frame belongs to one; of frames of one camera with one stamp,
   // as after a reset of its clock, the first that belongs to none is meant. O(n log n).
   std::vector<EvidenceSet> sets() const;

@@ -1,8 +1,12 @@
 #include "evaluation/certificates/fact_order.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <span>
+#include <tuple>
 #include <utility>
 
 #include "evaluation/certificates/observed_rates.h"
@@ -14,9 +18,73 @@ Nanoseconds count_of(DeviceTime device) { return Nanoseconds(nanoseconds_of(devi
 Nanoseconds count_of(SteadyTime steady) { return steady.time_since_epoch(); }
 Picoseconds at_least(Nanoseconds delay) { return -Picoseconds(delay); }
 
+// What a clock counts in the time of the first one, roughly. Never decides more than an order.
+struct RoughClock {
+  Nanoseconds from{};    // what it counts then
+  Nanoseconds common{};  // at this time of the first clock
+  double rate = 0;       // against the first clock
+
+  Nanoseconds common_of(Nanoseconds local) const {
+    const Nanoseconds step = local - from;
+    return common + step -
+           Nanoseconds(static_cast<std::int64_t>(static_cast<double>(step.count()) * rate));
+  }
+};
+using RoughClocks = std::vector<std::optional<RoughClock>>;
+
+// Ties of clocks to times that are known, each late by some delay.
+class RoughTies {
+ public:
+  void add(std::size_t clock, Nanoseconds at, Nanoseconds common) {
+    ties_[clock].push_back({at, common});
+  }
+
+  bool empty() const { return ties_.empty(); }
+
+  void set(RoughClocks& clocks) {
+    for (auto& [clock, ties] : ties_) {
+      std::ranges::sort(ties, {}, &Tie::at);
+      clocks[clock] = clock_of(ties);
+    }
+  }
+
+ private:
+  struct Tie {
+    Nanoseconds at{};
+    Nanoseconds common{};
+
+    Nanoseconds ahead() const { return at - common; }
+  };
+
+  // One among neighbours that was not put off: by an odd delay, or since its clock read the same
+  // before a step back.
+  static Tie middle_of(std::span<Tie> ties) {
+    const auto middle = ties.begin() + static_cast<std::ptrdiff_t>(ties.size() / 2);
+    std::ranges::nth_element(ties, middle, {}, &Tie::ahead);
+    return *middle;
+  }
+
+  // Over less than kLong the delays matter more than the rate, and no clock is faster than
+  // kMostRate.
+  static RoughClock clock_of(std::span<Tie> ties) {
+    constexpr Nanoseconds kLong = std::chrono::seconds(100);
+    constexpr double kMostRate = 1e-3;
+    const std::size_t third = (ties.size() + 2) / 3;
+    const Tie last = middle_of(ties.last(third));
+    const Tie first = middle_of(ties.first(third));
+    RoughClock clock{first.at, first.common};
+    const Nanoseconds span = last.at - first.at;
+    if (span < kLong) return clock;
+    const double rate = to_ns(last.ahead() - first.ahead()) / to_ns(span);
+    if (std::abs(rate) <= kMostRate) clock.rate = rate;
+    return clock;
+  }
+
+  std::map<std::size_t, std::vector<Tie>> ties_;
+};
+
 // Hosts that no message ties are taken to begin with their first frames at one time.
-void align_by_first_arrivals(const CaptureEvidence& evidence,
-                             std::vector<std::optional<Nanoseconds>>& offset) {
+void align_by_first_arrivals(const CaptureEvidence& evidence, RoughClocks& clocks) {
   std::vector<std::optional<Nanoseconds>> first(evidence.layout().hosts);
   for (const FrameEvidence& frame : evidence.frames()) {
     auto& arrival = first[evidence.layout().cameras[frame.camera].host];
@@ -24,41 +92,57 @@ void align_by_first_arrivals(const CaptureEvidence& evidence,
   }
   std::optional<Nanoseconds> begin;  // on the first clock
   for (std::size_t host = 0; host < first.size() && !begin; ++host) {
-    if (first[host] && offset[host]) begin = *first[host] - *offset[host];
+    if (first[host] && clocks[host]) begin = clocks[host]->common_of(*first[host]);
   }
   // Where none of them has frames, as a master without cameras, any origin does.
   for (std::size_t host = 0; host < first.size() && !begin; ++host) begin = first[host];
   for (std::size_t host = 0; begin && host < first.size(); ++host) {
-    if (first[host] && !offset[host]) offset[host] = *first[host] - *begin;
+    if (first[host] && !clocks[host]) clocks[host] = RoughClock{*first[host], *begin};
   }
 }
 
-// By how much each clock is ahead of the first, roughly: what its first tie to a clock that is
-// known says.
-std::vector<Nanoseconds> rough_offsets(const CaptureEvidence& evidence, std::size_t hosts) {
-  std::vector<std::optional<Nanoseconds>> offset(hosts + evidence.layout().cameras.size());
-  offset[0] = Nanoseconds(0);
-  for (std::size_t pass = 0; pass < hosts; ++pass) {
+// From each clock that is known to those that messages tie to it.
+void follow_messages(const CaptureEvidence& evidence, RoughClocks& clocks) {
+  for (;;) {
+    RoughTies ties;
     for (const HostMessage& message : evidence.messages()) {
-      const Nanoseconds ahead = count_of(message.received) - count_of(message.sent);
-      std::optional<Nanoseconds>& from = offset[message.from];
-      std::optional<Nanoseconds>& to = offset[message.to];
-      if (from && !to) to = *from + ahead;
-      if (to && !from) from = *to - ahead;
+      const std::size_t from = evidence.clock_of(message.from);
+      const std::size_t to = evidence.clock_of(message.to);
+      const Nanoseconds sent = count_of(message.sent);
+      const Nanoseconds received = count_of(message.received);
+      if (clocks[from] && !clocks[to]) ties.add(to, received, clocks[from]->common_of(sent));
+      if (clocks[to] && !clocks[from]) ties.add(from, sent, clocks[to]->common_of(received));
     }
+    if (ties.empty()) return;
+    ties.set(clocks);
   }
-  align_by_first_arrivals(evidence, offset);
+}
+
+// Each camera from its host, by its polls and frames.
+void follow_cameras(const CaptureEvidence& evidence, RoughClocks& clocks) {
+  const std::size_t hosts = evidence.layout().hosts;
+  RoughTies ties;
   const auto tie = [&](std::uint32_t camera, DeviceTime device, SteadyTime steady) {
-    std::optional<Nanoseconds>& own = offset[hosts + camera];
-    const std::uint32_t host = evidence.layout().cameras[camera].host;
-    if (!own) own = offset[host].value_or(Nanoseconds(0)) + count_of(device) - count_of(steady);
+    const std::optional<RoughClock>& host = clocks[evidence.layout().cameras[camera].host];
+    ties.add(hosts + camera, count_of(device),
+             host ? host->common_of(count_of(steady)) : count_of(steady));
   };
   for (const ClockPollEvidence& poll : evidence.polls()) tie(poll.camera, poll.device, poll.t1);
   for (const FrameEvidence& frame : evidence.frames())
     tie(frame.camera, frame.sensor, frame.arrival);
-  std::vector<Nanoseconds> rough;
-  rough.reserve(offset.size());
-  for (const auto& known : offset) rough.push_back(known.value_or(Nanoseconds(0)));
+  ties.set(clocks);
+}
+
+std::vector<RoughClock> rough_clocks(const CaptureEvidence& evidence) {
+  RoughClocks clocks(evidence.clocks());
+  clocks[0] = RoughClock{};
+  follow_messages(evidence, clocks);
+  align_by_first_arrivals(evidence, clocks);
+  follow_messages(evidence, clocks);
+  follow_cameras(evidence, clocks);
+  std::vector<RoughClock> rough;
+  rough.reserve(clocks.size());
+  for (const auto& known : clocks) rough.push_back(known.value_or(RoughClock{}));
   return rough;
 }
 
@@ -80,6 +164,9 @@ std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_
                                    double camera_ppm) {
   std::vector<RateBound> rates(evidence.layout().hosts, RateBound(host_ppm));
   rates.resize(rates.size() + evidence.layout().cameras.size(), RateBound(camera_ppm));
+  for (const OutsideClock& clock : evidence.outside_clocks()) {
+    rates.emplace_back(clock.is_exact ? 0 : host_ppm);
+  }
   return rates;
 }
 
@@ -90,6 +177,11 @@ std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence) {
   }
   std::vector<RateBound> rates = equal_rates(evidence, 2 * assumed.host_rate_ppm,
                                              assumed.host_rate_ppm + assumed.camera_rate_ppm);
+  // Against host 0, whose clock is time here.
+  for (std::size_t i = 0; i < evidence.outside_clocks().size(); ++i) {
+    if (!evidence.outside_clocks()[i].is_exact) continue;
+    rates[rates.size() - evidence.outside_clocks().size() + i] = RateBound(assumed.host_rate_ppm);
+  }
   const std::vector<std::optional<double>> observed = observed_rates_ppm(evidence);
   for (std::size_t clock = 0; clock < rates.size(); ++clock) {
     if (observed[clock]) rates[clock] = RateBound(*observed[clock], *assumed.observed_margin_ppm);
@@ -122,8 +214,11 @@ void FactOrder::add_points(const CaptureEvidence& evidence) {
   const Assumptions& assumed = evidence.assumptions();
   for (std::size_t i = 0; i < evidence.messages().size(); ++i) {
     const HostMessage& message = evidence.messages()[i];
-    fact(add(message.to, count_of(message.received)), add(message.from, count_of(message.sent)),
-         at_least(from_ms(assumed.message_ms)), FactKind::kMessage, i);
+    const std::uint32_t received = add(evidence.clock_of(message.to), count_of(message.received));
+    const std::uint32_t sent = add(evidence.clock_of(message.from), count_of(message.sent));
+    const Nanoseconds least = message.is_pulse ? Nanoseconds(0) : from_ms(assumed.message_ms);
+    fact(received, sent, at_least(least - message.slack),
+         message.is_pulse ? FactKind::kPulse : FactKind::kMessage, i);
   }
   const Picoseconds poll_delay = at_least(from_ms(assumed.poll_ms));
   for (std::size_t i = 0; i < evidence.polls().size(); ++i) {
@@ -151,13 +246,14 @@ void FactOrder::add_points(const CaptureEvidence& evidence) {
   }
 }
 
-// Points by their clock's count less its rough offset; facts and frames follow them.
+// Points by their time, roughly; facts and frames follow them.
 void FactOrder::sort_points(const CaptureEvidence& evidence) {
-  const std::vector<Nanoseconds> offset = rough_offsets(evidence, hosts_);
+  const std::vector<RoughClock> rough = rough_clocks(evidence);
   std::vector<std::uint32_t> order(points_.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto key = [&](std::uint32_t i) {
-    return std::pair(points_[i].local - offset[points_[i].clock], points_[i].clock);
+    const ClockPoint& point = points_[i];
+    return std::tuple(rough[point.clock].common_of(point.local), point.clock, point.local);
   };
   std::ranges::stable_sort(order, {}, key);
   std::vector<std::uint32_t> place(points_.size());

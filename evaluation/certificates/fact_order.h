@@ -1,9 +1,11 @@
 // The evidence as facts about points of clocks, in an order in which a ClockGraph takes them.
 //
 // A point is the instant at which a clock counted a number. Clocks are those of the hosts, then
-// those of the cameras. A fact bounds the difference of two points: t(to) - t(from) <= most.
+// those of the cameras, then those outside the rig. A fact bounds the difference of two points:
+// t(to) - t(from) <= most.
 //
-//   a message   t(sent)   - t(received)   <= -least delay
+//   a message   t(sent)   - t(received)   <= slack - least delay
+//   a pulse     the same without a least delay
 //   a poll      t(t0)     - t(device + 1) <= -least delay;   t(device) - t(t1) <= -least delay
 //   an arrival  t(sensor) - t(arrival)    <= -(half the exposure, and the least delay)
 //
@@ -11,8 +13,9 @@
 // takes the end that makes it sure. A frame has two points, the least and the most that the clock
 // counted in the middle of its exposure.
 //
-// The order is by clock counts less a rough offset of each clock, so that the points of a fact lie
-// close together. It decides how many points are live at a time, never what follows from them.
+// The order is by what the clocks count, each less a rough line of its offset, so that the points
+// of a fact, and of a set, lie close together. It decides how many points are live at a time, never
+// what follows from them.
 //
 //   void walk(const CaptureEvidence& evidence, ClockGraph& graph) {
 //     const FactOrder order(evidence);
@@ -37,7 +40,7 @@ struct ClockPoint {
   Nanoseconds local{};
 };
 
-enum class FactKind : std::uint8_t { kMessage, kPollRequest, kPollReply, kArrival };
+enum class FactKind : std::uint8_t { kMessage, kPulse, kPollRequest, kPollReply, kArrival };
 
 struct ClockFact {
   std::uint32_t from = 0;  // places in points()
@@ -56,7 +59,7 @@ struct FramePoints {
   std::uint32_t most = 0;
 };
 
-// The rates of all clocks, hosts first: as assumed, or within the assumed margin of what is
+// The rates of all clocks: as assumed, or within the assumed margin of what is
 // observed, against host 0's clock as time. A clock whose rate shows nowhere is as far from that as
 // two data sheets say.
 std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence);

@@ -93,20 +93,22 @@ double chained_ppm(double own_ppm, double slope) {
 
 std::vector<std::optional<double>> observed_rates_ppm(const CaptureEvidence& evidence) {
   const std::uint32_t hosts = evidence.layout().hosts;
-  std::vector<std::optional<double>> rates(hosts + evidence.layout().cameras.size());
+  const auto ends = hosts + static_cast<std::uint32_t>(evidence.outside_clocks().size());
+  std::vector<std::optional<double>> rates(evidence.clocks());
   rates[0] = 0;
-  // From host to host, as far as messages lead.
+  // From host to host, or to a clock outside, as far as messages lead.
   std::vector<std::uint32_t> reached = {0};
   for (std::size_t next = 0; next < reached.size(); ++next) {
-    for (std::uint32_t other = 0; other < hosts; ++other) {
-      if (rates[other]) continue;
+    for (std::uint32_t other = 0; other < ends; ++other) {
+      std::optional<double>& rate = rates[evidence.clock_of(other)];
+      if (rate) continue;
       const auto slope = host_slope(evidence, reached[next], other);
       if (!slope) continue;
-      rates[other] = chained_ppm(*rates[reached[next]], *slope);
+      rate = chained_ppm(*rates[evidence.clock_of(reached[next])], *slope);
       reached.push_back(other);
     }
   }
-  for (std::uint32_t camera = 0; camera + hosts < rates.size(); ++camera) {
+  for (std::uint32_t camera = 0; camera < evidence.layout().cameras.size(); ++camera) {
     const std::optional<double>& host = rates[evidence.layout().cameras[camera].host];
     const auto slope = camera_slope(evidence, camera);
     if (host && slope) rates[hosts + camera] = chained_ppm(*host, *slope);

@@ -27,7 +27,9 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 class Readings {
  public:
   explicit Readings(const CaptureEvidence& evidence)
-      : layout_(evidence.layout()), of_camera_(layout_.cameras.size()), of_host_(layout_.hosts) {
+      : layout_(evidence.layout()),
+        of_camera_(layout_.cameras.size()),
+        of_host_(layout_.hosts + evidence.outside_clocks().size()) {
     for (const ClockPollEvidence& poll : evidence.polls()) {
       of_camera_[poll.camera].push_back(nanoseconds_of(poll.device));
     }
@@ -69,23 +71,31 @@ class Readings {
   std::vector<std::vector<std::int64_t>> of_host_;
 };
 
-std::string clock_name(const FactOrder& order, std::uint32_t clock) {
-  return clock < order.hosts() ? fmt::format("host {}", clock)
-                               : fmt::format("camera {}", clock - order.hosts());
+std::string clock_name(const CaptureEvidence& evidence, std::uint32_t clock) {
+  const std::uint32_t hosts = evidence.layout().hosts;
+  const std::size_t outside = hosts + evidence.layout().cameras.size();
+  if (clock < hosts) return fmt::format("host {}", clock);
+  if (clock < outside) return fmt::format("camera {}", clock - hosts);
+  return evidence.outside_clocks()[clock - outside].name;
 }
 
-std::string instant_text(const FactOrder& order, std::uint32_t place) {
-  const ClockPoint& point = order.points()[place];
-  return fmt::format("{} at {:.6f} s", clock_name(order, point.clock), to_seconds(point.local));
+std::string instant_text(const CaptureEvidence& evidence, const ClockPoint& point) {
+  return fmt::format("{} at {:.6f} s", clock_name(evidence, point.clock), to_seconds(point.local));
 }
 
 // "message: sent by host 2 at 12.345678 s, received by host 0 at 45.678901 s".
-std::string fact_text(const FactOrder& order, const ClockFact& fact) {
-  const std::string before = instant_text(order, fact.to);
-  const std::string after = instant_text(order, fact.from);
+std::string fact_text(const CaptureEvidence& evidence, const FactOrder& order,
+                      const ClockFact& fact) {
+  const std::string before = instant_text(evidence, order.points()[fact.to]);
+  const std::string after = instant_text(evidence, order.points()[fact.from]);
   switch (fact.kind) {
     case FactKind::kMessage:
       return fmt::format("a message sent by {} was received by {}", before, after);
+    case FactKind::kPulse:
+      return order.points()[fact.to].clock < order.hosts()
+                 ? fmt::format("{}, the assumed lateness taken off, was before the pulse of {}",
+                               before, after)
+                 : fmt::format("a pulse of {} had been seen by {}", before, after);
     case FactKind::kPollRequest:
       return fmt::format("{} asked for the clock, which read no more than {}", before, after);
     case FactKind::kPollReply:
@@ -101,7 +111,7 @@ ContradictedCapture contradicted(std::uint64_t seed, const CaptureEvidence& evid
   const Contradiction proof = contradiction_of(order, closing);
   ContradictedCapture found{.seed = seed, .before_ms = to_ms(proof.before)};
   for (const std::uint32_t fact : proof.facts) {
-    found.chain.push_back(fact_text(order, order.facts()[fact]));
+    found.chain.push_back(fact_text(evidence, order, order.facts()[fact]));
   }
   found.possible_ppm = possible_rate_ppm(evidence).value_or(0);
   return found;
@@ -122,7 +132,7 @@ struct CapturePart {
   std::vector<CertifiedPair> pairs{};
   std::size_t impossible_sets = 0;
   std::size_t frames = 0, frames_outside = 0;
-  std::size_t messages = 0, unusable_messages = 0, estimated_exchanges = 0, polls = 0;
+  EvidenceCounts counts{};
   std::map<TieKey, TieSums> ties{};
 };
 
@@ -184,10 +194,10 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
     part.problem = failure.what();
     return part;
   }
-  part.messages = evidence.messages().size();
-  part.unusable_messages = evidence.unusable_messages();
-  part.estimated_exchanges = evidence.estimated_exchanges();
-  part.polls = evidence.polls().size();
+  for (const HostExchangeLog& each : options.logs) {
+    both.add(each.host, each.log, options.host_of_address);
+  }
+  part.counts = evidence.counts();
   const std::vector<EvidenceSet> sets = both.sets();
   const FactOrder order(evidence);
   PairVisitor keep;
@@ -244,10 +254,7 @@ CertificateRow row_of(const std::string& pipeline, std::span<CapturePart> parts,
     row.impossible_sets += part.impossible_sets;
     row.frames += part.frames;
     row.frames_outside += part.frames_outside;
-    row.messages += part.messages;
-    row.unusable_messages += part.unusable_messages;
-    row.estimated_exchanges += part.estimated_exchanges;
-    row.polls += part.polls;
+    row.counts += part.counts;
     for (const auto& [key, sum] : part.ties) {
       TieSums& all = ties[key];
       all.sets += sum.sets;

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@
 
 namespace simbench::evaluation {
 
+struct HostExchangeLog {
+  std::uint32_t host = 0;
+  ExchangeLog log{};
+};
+
 struct CertificateOptions {
   std::vector<std::string> pipelines{};
   std::uint64_t first_seed = 1;
@@ -41,6 +47,9 @@ struct CertificateOptions {
   double within_ms = 1;
   bool keep_pairs = false;  // CertificateRow::pairs
   Assumptions assumptions{};
+  // What programs on hosts logged, of a recording of one capture.
+  std::vector<HostExchangeLog> logs{};
+  std::map<std::string, std::uint32_t> host_of_address{};  // of servers that are hosts of the rig
 };
 
 // The tie that was the widest of its set's, over the sets in which it was.
@@ -84,7 +93,7 @@ struct CertificateRow {
   std::size_t impossible_sets = 0;  // that no pulses of a common trigger explain
   std::size_t frames = 0;           // of the sets, whose bounds the truth could break
   std::size_t frames_outside = 0;
-  std::size_t messages = 0, unusable_messages = 0, estimated_exchanges = 0, polls = 0;
+  EvidenceCounts counts{};
   std::vector<WeakTie> weakest{};  // the most frequent first
 
   // Quantile p of the sets' bounds; NaN without sets.

@@ -94,8 +94,10 @@ class MeasurementsLines final : public LogLines {
         std::string_view::npos) {
       return skip();
     }
-    return LogLine{
-        .format = "chrony_measurements", .name = words[2], .point = {*time, 0 - theta_s}};
+    return LogLine{.format = "chrony_measurements",
+                   .name = words[2],
+                   .point = {*time, 0 - theta_s},
+                   .delay_s = finite_of(words[12], "peer delay", kLargestErrorS, place)};
   }
 
   std::vector<std::string> notes() const override {
@@ -118,7 +120,10 @@ class RefclocksLines final : public LogLines {
       return skip();
     }
     const double offset_s = finite_of(words[6], "raw offset", kLargestErrorS, place);
-    return LogLine{.format = "chrony_refclocks", .name = words[2], .point = {*time, 0 - offset_s}};
+    return LogLine{.format = "chrony_refclocks",
+                   .name = words[2],
+                   .point = {*time, 0 - offset_s},
+                   .is_pulse = words[5] == "1"};
   }
 
   std::vector<std::string> notes() const override {

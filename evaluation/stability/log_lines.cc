@@ -24,6 +24,7 @@ constexpr LogFormat kFormats[] = {
     {"`chronyc -c tracking` in a loop", chronyc_tracking_lines},
     {"peerstats of ntpd", peerstats_lines},
     {"loopstats of ntpd", loopstats_lines},
+    {"rawstats of ntpd", rawstats_lines},
     {"output of sntp", sntp_lines},
     {"output of ntpshmmon", ntpshmmon_lines},
     {"w32tm /stripchart", w32tm_lines},

@@ -8,6 +8,7 @@
 //   }
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -44,6 +45,11 @@ struct LogLine {
   bool locked = true;
   // What may be the date at which a collector of logs had the line, where times count from a boot.
   std::string_view written{};
+  // What an exchange has besides (certificates/exchange_log.h): its delay, or its four stamps; and
+  // whether the point is a pulse, of which the clock's reading is known.
+  std::optional<double> delay_s{};
+  std::optional<std::array<HostTime, 4>> stamps{};
+  bool is_pulse = false;
 };
 
 class LogLines {
@@ -98,6 +104,7 @@ std::unique_ptr<LogLines> chronyc_tracking_lines();
 std::unique_ptr<LogLines> linuxptp_lines();
 std::unique_ptr<LogLines> loopstats_lines();
 std::unique_ptr<LogLines> peerstats_lines();
+std::unique_ptr<LogLines> rawstats_lines();
 std::unique_ptr<LogLines> sntp_lines();
 std::unique_ptr<LogLines> ntpshmmon_lines();
 std::unique_ptr<LogLines> w32tm_lines();

@@ -76,6 +76,46 @@ class PeerstatsLines final : public LogLines {
   }
 };
 
+// "day seconds source own t1 t2 t3 t4 ...", the stamps in seconds since 1900; later versions have
+// more columns. A stamp that is missing is 0, as t1 of a broadcast.
+class RawstatsLines final : public LogLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) override {
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.size() < 5 || !begins_with_day(words) ||
+        words[2].find_first_of(".:(") == std::string_view::npos || number_in<double>(words[2]) ||
+        words[3].find_first_of(".:(") == std::string_view::npos) {
+      return std::nullopt;
+    }
+    check_width(words, kWords, "at least 8, as rawstats has", place);
+    std::array<HostTime, 4> stamps;
+    bool is_whole = true;
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      const std::optional<Nanoseconds> stamp = time_in(words[4 + i], kSecondUnit);
+      if (!stamp || *stamp < Nanoseconds(0)) {
+        place.fail("stamp", words[4 + i], "seconds since 1900");
+      }
+      is_whole &= *stamp != Nanoseconds(0);
+      stamps[i] = HostTime(*stamp - k1900To1970);
+    }
+    if (!is_whole || stamps[3] < stamps[0] || stamps[2] < stamps[1]) return skip();
+    const Nanoseconds late = (stamps[1] - stamps[0]) + (stamps[2] - stamps[3]);
+    return LogLine{.format = "ntpd_rawstats",
+                   .name = words[2],
+                   .point = {statistics_time_of(words, place), 0 - to_seconds(late) / 2},
+                   .stamps = stamps};
+  }
+
+  std::vector<std::string> notes() const override {
+    if (skipped() == 0) return {};
+    return {counted(skipped(), "exchange") + " without all stamps in order left out"};
+  }
+
+ private:
+  static constexpr std::size_t kWords = 8;
+  static constexpr std::chrono::seconds k1900To1970{2'208'988'800};
+};
+
 // "2018-09-29 19:00:00.448103 (-0200) +0.000064 +/- 0.018346 host address s2 no-leap"
 class SntpLines final : public LogLines {
  public:
@@ -239,6 +279,7 @@ class PtpdLines final : public LogLines {
 
 std::unique_ptr<LogLines> loopstats_lines() { return std::make_unique<LoopstatsLines>(); }
 std::unique_ptr<LogLines> peerstats_lines() { return std::make_unique<PeerstatsLines>(); }
+std::unique_ptr<LogLines> rawstats_lines() { return std::make_unique<RawstatsLines>(); }
 std::unique_ptr<LogLines> sntp_lines() { return std::make_unique<SntpLines>(); }
 std::unique_ptr<LogLines> ntpshmmon_lines() { return std::make_unique<NtpshmmonLines>(); }
 std::unique_ptr<LogLines> w32tm_lines() { return std::make_unique<W32tmLines>(); }

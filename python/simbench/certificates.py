@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Mapping, Optional, Sequence
+from typing import Any, Dict, Mapping, Optional, Sequence, Union
 
-from .command import NOT_KEPT, Ended, Output, joined, run_command, sets_of, words_of
+from .command import NOT_KEPT, Ended, Output, joined, repeated, run_command, sets_of, words_of
 from .results import Path, _whole
 from .tables import table
 
@@ -73,11 +73,14 @@ def certify(
     arrival_ms: Optional[float] = None,
     host_stamp_ms: Optional[float] = None,
     estimated_stamp_ms: Optional[float] = None,
+    pulse_late_us: Optional[float] = None,
     sensor_stamp_us: Optional[float] = None,
     common_trigger: bool = False,
     trigger_hz: Optional[float] = None,
     trigger_spread_us: Optional[float] = None,
     causal: bool = False,
+    clock_log: Union[str, Sequence[str]] = (),
+    host_address: Union[str, Sequence[str]] = (),
     pairs: Optional[Path] = None,
     set: Optional[Mapping[str, Any]] = None,
     seeds: int = 1,
@@ -100,6 +103,10 @@ def certify(
     common_trigger: pulses of one trigger expose all frames; trigger_hz: its rate, else the
         scenario's; trigger_spread_us: of the exposures of one pulse, 100.
     causal: use only what came before a set's last exposure.
+    pulse_late_us: how late a host sees a pulse of its PPS line; None: pulses prove nothing.
+    clock_log: of a recording, what a program on a host exchanged meanwhile, "HOST=FILE" each
+        (ntpd's rawstats, chrony's measurements.log or refclocks.log); host_address: which servers
+        in them are hosts of the rig, "HOST=ADDRESS" each.
     pairs: also write the interval of every pair of frames of every set to this CSV file.
     set, seeds, first_seed, jobs: of a scenario, as for run().
     progress: show it; None: where tqdm is installed and somebody looks.
@@ -110,6 +117,8 @@ def certify(
         observed_rates_ppm=observed_rates_ppm, message_ms=message_ms, poll_ms=poll_ms,
         arrival_ms=arrival_ms, host_stamp_ms=host_stamp_ms,
         estimated_stamp_ms=estimated_stamp_ms, sensor_stamp_us=sensor_stamp_us,
+        pulse_late_us=pulse_late_us, clock_log=repeated("clock_log", clock_log),
+        host_address=repeated("host_address", host_address),
         common_trigger=bool(common_trigger), trigger_hz=trigger_hz,
         trigger_spread_us=trigger_spread_us, causal=bool(causal),
         pairs=None if pairs is None else os.fspath(pairs), set=sets_of(set),

@@ -34,9 +34,12 @@ std::string tie_name(const WeakTie& tie) {
 // What a tie is so wide for, and what would help.
 std::string cure_text(const CertificateRow& row, const WeakTie& tie) {
   const bool is_camera = tie.kind == LinkKind::kCamera;
-  if (!is_camera && std::isinf(tie.width_ms) && row.estimated_exchanges > 0) {
+  if (!is_camera && std::isinf(tie.width_ms) && row.counts.estimated_exchanges > 0) {
     return "stamps that a host_sync estimated prove nothing: state --estimated-stamp-ms, or use a "
            "host_sync with the kernel's stamps";
+  }
+  if (!is_camera && std::isinf(tie.width_ms) && row.counts.unused_pulses > 0) {
+    return "pulses prove nothing until it is known how late hosts see them: state --pulse-late-us";
   }
   if (std::isinf(tie.width_ms)) {
     return is_camera ? "nothing bounds it from both sides: record polls of the camera's clock"
@@ -129,11 +132,22 @@ std::optional<Block> problems_block(const CertificateRun& run) {
       block.items.push_back(fmt::format("{}: {}", row.pipeline, row.problem));
       continue;
     }
-    if (row.estimated_exchanges > 0) {
+    if (row.counts.estimated_exchanges > 0) {
       block.items.push_back(fmt::format(
           "{}: {} with stamps that its host_sync estimated; --estimated-stamp-ms states their "
           "error and lets them count",
-          row.pipeline, counted(static_cast<std::uint64_t>(row.estimated_exchanges), "exchange")));
+          row.pipeline,
+          counted(static_cast<std::uint64_t>(row.counts.estimated_exchanges), "exchange")));
+    }
+    if (row.counts.unused_pulses > 0) {
+      block.items.push_back(fmt::format(
+          "{}: {}; --pulse-late-us states how late hosts see them at most and lets them count",
+          row.pipeline, counted(static_cast<std::uint64_t>(row.counts.unused_pulses), "pulse")));
+    }
+    if (row.counts.logged_outside > 0) {
+      block.items.push_back(
+          fmt::format("{}: {} of the logs from before or after the capture", row.pipeline,
+                      counted(static_cast<std::uint64_t>(row.counts.logged_outside), "reading")));
     }
     if (row.impossible_sets > 0) {
       block.items.push_back(
@@ -213,10 +227,13 @@ Json certified_row_json(const CertificateRow& row) {
                  {"max", finite_json(row.certified_ms(1))}}},
                {"within", row.within},
                {"within_share", finite_json(row.share_within())},
-               {"messages", row.messages},
-               {"unusable_messages", row.unusable_messages},
-               {"estimated_exchanges", row.estimated_exchanges},
-               {"polls", row.polls},
+               {"messages", row.counts.messages},
+               {"unusable_messages", row.counts.unusable_messages},
+               {"estimated_exchanges", row.counts.estimated_exchanges},
+               {"polls", row.counts.polls},
+               {"pulses", row.counts.pulses},
+               {"unused_pulses", row.counts.unused_pulses},
+               {"logged_outside", row.counts.logged_outside},
                {"frames", row.frames == 0 ? Json(nullptr) : Json(row.frames)},
                {"truth_outside", row.frames == 0 ? Json(nullptr) : Json(row.frames_outside)},
                {"impossible_sets", row.impossible_sets}};

@@ -62,6 +62,7 @@ SimPulseInput::SimPulseInput(SimHost& host, const PulseSchedule& source, std::st
 Task<std::optional<PulseStamp>> SimPulseInput::next(SteadyTime deadline) {
   const std::optional<Pulse> pulse = co_await next_pulse(deadline);
   if (!pulse) co_return std::nullopt;
+  if (pulse->stamp.gnss) host_.report_pulse(pulse->stamp);
   co_return pulse->stamp;
 }
 

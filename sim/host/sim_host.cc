@@ -162,6 +162,10 @@ void SimHost::report_exchange(const Exchange& exchange) {
   world_.sink.on_event(ExchangeEvent{id_, exchange});
 }
 
+void SimHost::report_pulse(const PulseStamp& pulse) {
+  world_.sink.on_event(PulseSighting{id_, pulse.steady, pulse.gnss.value()});
+}
+
 void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_event(outcome); }
 
 void SimHost::report_program_failure(const ProgramFailure& failure) {

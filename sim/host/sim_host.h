@@ -144,6 +144,8 @@ class SimHost final : public Host {
 
   // As pulse_input().
   SimPulseInput* pulse_line(PulseLine line);
+  // A host_sync took a pulse whose time the receiver announced.
+  void report_pulse(const PulseStamp& pulse);
   // The trigger line has pulses from now on.
   void trigger_started();
 

@@ -292,12 +292,12 @@ TEST(Certify, WhatHasNoBoundProvesNothing) {
 TEST(Certify, EstimatedStampsAreLeftOut) {
   const SmallWorld world({});
   const CertificateRow without = world.run(1, assumptions_of(world.scenario)).rows.front();
-  EXPECT_EQ(without.messages, 0U);
-  EXPECT_GT(without.estimated_exchanges, 0U);
+  EXPECT_EQ(without.counts.messages, 0U);
+  EXPECT_GT(without.counts.estimated_exchanges, 0U);
   EXPECT_TRUE(std::isinf(without.certified_ms(0)));
   const CertificateRow with = world.run(1).rows.front();
-  EXPECT_EQ(with.messages, 2 * without.estimated_exchanges);
-  EXPECT_EQ(with.estimated_exchanges, 0U);
+  EXPECT_EQ(with.counts.messages, 2 * without.counts.estimated_exchanges);
+  EXPECT_EQ(with.counts.estimated_exchanges, 0U);
   EXPECT_TRUE(std::isfinite(with.certified_ms(1)));
 }
 

@@ -1,0 +1,155 @@
+#include "evaluation/certificates/exchange_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "evaluation/stability/log_lines.h"
+#include "recording/line_reader.h"
+#include "recording/text_fields.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr const char* kAllowed =
+    "ntpd's rawstats, chrony's measurements.log or refclocks.log: logs with what was exchanged";
+
+// chrony's time of an exchange is a whole second, somewhere between its first and last stamp.
+constexpr Nanoseconds kSecond = std::chrono::seconds(1);
+// What chrony prints has four digits.
+constexpr double kPrinted = 5e-4;
+
+Nanoseconds from_seconds(double seconds) { return from_ms(seconds * 1e3); }
+
+// Of an exchange only the offset and the delay are known: both stamps of the server are one.
+LoggedExchange exchange_of(const LogLine& line, double delay_s) {
+  const Nanoseconds offset = from_seconds(-line.point.error_s);
+  const Nanoseconds delay = std::max(from_seconds(delay_s), Nanoseconds(0));
+  const HostTime middle{Nanoseconds(line.point.time) + kSecond / 2};
+  LoggedExchange exchange{.server = std::string(line.name)};
+  exchange.t1 = middle - delay / 2;
+  exchange.t2 = exchange.t3 = middle + offset;
+  exchange.t4 = exchange.t1 + delay;
+  exchange.common_error = kSecond;
+  exchange.error =
+      from_seconds(kPrinted * (std::abs(line.point.error_s) + delay_s)) + Nanoseconds(1);
+  exchange.is_estimated = true;
+  return exchange;
+}
+
+LoggedPulse pulse_of(const LogLine& line) {
+  const Nanoseconds offset = from_seconds(-line.point.error_s);
+  const Nanoseconds about = Nanoseconds(line.point.time) + offset;
+  const Nanoseconds second = std::chrono::round<std::chrono::seconds>(about);
+  return {std::string(line.name), HostTime(second - offset), second};
+}
+
+void add(const LogLine& line, ExchangeLog& log) {
+  if (line.stamps) {
+    const auto& [t1, t2, t3, t4] = *line.stamps;
+    LoggedExchange exchange{
+        .server = std::string(line.name), .t1 = t1, .t2 = t2, .t3 = t3, .t4 = t4};
+    exchange.error = Nanoseconds(1);
+    log.exchanges.push_back(exchange);
+  } else if (line.delay_s) {
+    log.exchanges.push_back(exchange_of(line, *line.delay_s));
+  } else if (line.is_pulse) {
+    log.pulses.push_back(pulse_of(line));
+  }
+}
+
+// Reads all lines in the first form that has one of them.
+class ExchangeLines {
+ public:
+  std::optional<LogLine> read(std::string_view line, const LogPlace& place) {
+    if (lines_) return lines_->read(line, place);
+    for (const auto& make : {rawstats_lines, chrony_measurements_lines, chrony_refclocks_lines}) {
+      std::unique_ptr<LogLines> lines = make();
+      const std::optional<LogLine> found = tried(*lines, line, place);
+      if (!found && lines->skipped() == 0) continue;
+      lines_ = std::move(lines);
+      return found;
+    }
+    if (!other_ && (other_ = what_else(line, place))) other_line_ = place.line;
+    return std::nullopt;
+  }
+
+  // For a file without an exchange.
+  [[noreturn]] void fail(const LogPlace& end) const {
+    if (other_)
+      LogPlace{end.path, other_line_}.fail(fmt::format("found {}, allowed: {}", *other_, kAllowed));
+    if (!damaged_.empty()) throw scenarios::InputError(damaged_);
+    end.fail(fmt::format("the file ends without an exchange, allowed: {}", kAllowed));
+  }
+
+  std::vector<std::string> notes() const {
+    return lines_ ? lines_->notes() : std::vector<std::string>();
+  }
+
+ private:
+  // A line of a form that is not known yet may look damaged to another form.
+  std::optional<LogLine> tried(LogLines& lines, std::string_view line, const LogPlace& place) {
+    try {
+      return lines.read(line, place);
+    } catch (const scenarios::InputError& error) {
+      if (damaged_.empty()) damaged_ = error.what();
+      return std::nullopt;
+    }
+  }
+
+  // A log of estimates.
+  static std::optional<std::string> what_else(std::string_view line, const LogPlace& place) {
+    for (const LogFormat& format : log_formats()) {
+      try {
+        if (format.make()->read(line, place)) {
+          return fmt::format("{}, which has no exchanges", format.text);
+        }
+      } catch (const scenarios::InputError&) {
+        // Of another form, or damaged.
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::unique_ptr<LogLines> lines_{};
+  std::optional<std::string> other_{};
+  std::size_t other_line_ = 0;
+  std::string damaged_{};
+};
+
+ExchangeLog read_all(LineReader reader) {
+  ExchangeLog log{.path = reader.path()};
+  try {
+    ExchangeLines lines;
+    while (const std::optional<std::string_view> line = reader.next()) {
+      const std::optional<LogLine> found = lines.read(*line, {log.path, reader.line()});
+      if (!found) continue;
+      log.format = found->format;
+      add(*found, log);
+    }
+    if (log.exchanges.empty() && log.pulses.empty()) lines.fail({log.path, reader.line()});
+    for (const std::string& note : lines.notes()) log.notes.push_back(log.path + ": " + note);
+    if (reader.torn()) {
+      log.notes.push_back(fmt::format(
+          "{}: the last line has no line end and may be cut; it was left out", reader.place()));
+    }
+  } catch (const LineError& error) {
+    throw scenarios::InputError(error.what());
+  }
+  return log;
+}
+
+}  // namespace
+
+ExchangeLog read_exchange_log(const std::string& path) { return read_all(LineReader(path)); }
+
+ExchangeLog parse_exchange_log(std::string_view text, const std::string& path) {
+  return read_all(LineReader(path, text));
+}
+
+}  // namespace simbench::evaluation
