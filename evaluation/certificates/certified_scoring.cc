@@ -9,6 +9,7 @@
 #include <map>
 
 #include "evaluation/certificates/fact_order.h"
+#include "evaluation/certificates/frontier.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/document.h"
 
@@ -74,8 +75,13 @@ std::vector<EvidenceSet> CertifiedScoring::sets() const {
 
 std::vector<double> CertifiedScoring::bounds_ms() const {
   const FactOrder order(evidence_);
-  const CertifiedCapture found = certify(evidence_, order, sets(), Horizon::kWhole);
   std::vector<double> bounds;
+  CertifiedCapture found;
+  try {
+    found = certify(evidence_, order, sets(), Horizon::kWhole);
+  } catch (const TooManyInstants&) {
+    return bounds;
+  }
   if (found.contradiction) return bounds;
   for (const SetCertificate& set : found.sets) bounds.push_back(bound_ms(set.apart));
   return bounds;

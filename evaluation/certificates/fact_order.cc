@@ -32,26 +32,33 @@ struct RoughClock {
 };
 using RoughClocks = std::vector<std::optional<RoughClock>>;
 
-// Ties of clocks to times that are known, each late by some delay.
+// Ties of clocks to times that are known: at the latest, or at the earliest.
+enum class Bound : std::uint8_t { kLatest, kEarliest };
+
 class RoughTies {
  public:
-  void add(std::size_t clock, Nanoseconds at, Nanoseconds common) {
-    ties_[clock].push_back({at, common});
+  void add(std::size_t clock, Nanoseconds at, Nanoseconds common, Bound bound) {
+    ties_[clock].push_back({at, common, bound});
   }
 
-  bool empty() const { return ties_.empty(); }
-
-  void set(RoughClocks& clocks) {
+  // Sets the clocks that are tied, but those whose two bounds lie so far apart that they say
+  // little, as of stamps that a clock read twice, unless `takes_wide`. Whether any was set.
+  bool set(RoughClocks& clocks, bool takes_wide) {
+    bool any = false;
     for (auto& [clock, ties] : ties_) {
       std::ranges::sort(ties, {}, &Tie::at);
+      if (!takes_wide && is_wide(ties)) continue;
       clocks[clock] = clock_of(ties);
+      any = true;
     }
+    return any;
   }
 
  private:
   struct Tie {
     Nanoseconds at{};
     Nanoseconds common{};
+    Bound bound{};
 
     Nanoseconds ahead() const { return at - common; }
   };
@@ -62,6 +69,19 @@ class RoughTies {
     const auto middle = ties.begin() + static_cast<std::ptrdiff_t>(ties.size() / 2);
     std::ranges::nth_element(ties, middle, {}, &Tie::ahead);
     return *middle;
+  }
+
+  static bool is_wide(std::span<Tie> ties) {
+    constexpr Nanoseconds kWide = std::chrono::seconds(1);
+    const auto earliest = std::ranges::stable_partition(
+        ties, [](const Tie& tie) { return tie.bound == Bound::kLatest; });
+    const std::span<Tie> latest(ties.begin(), earliest.begin());
+    bool is_so = false;
+    if (!latest.empty() && !earliest.empty()) {
+      is_so = middle_of(latest).ahead() - middle_of(std::span(earliest)).ahead() > kWide;
+    }
+    std::ranges::sort(ties, {}, &Tie::at);
+    return is_so;
   }
 
   // Over less than kLong the delays matter more than the rate, and no clock is faster than
@@ -102,19 +122,22 @@ void align_by_first_arrivals(const CaptureEvidence& evidence, RoughClocks& clock
 }
 
 // From each clock that is known to those that messages tie to it.
-void follow_messages(const CaptureEvidence& evidence, RoughClocks& clocks) {
-  for (;;) {
+void follow_messages(const CaptureEvidence& evidence, RoughClocks& clocks, bool takes_wide) {
+  for (bool is_changed = true; is_changed;) {
     RoughTies ties;
     for (const HostMessage& message : evidence.messages()) {
       const std::size_t from = evidence.clock_of(message.from);
       const std::size_t to = evidence.clock_of(message.to);
       const Nanoseconds sent = count_of(message.sent);
       const Nanoseconds received = count_of(message.received);
-      if (clocks[from] && !clocks[to]) ties.add(to, received, clocks[from]->common_of(sent));
-      if (clocks[to] && !clocks[from]) ties.add(from, sent, clocks[to]->common_of(received));
+      if (clocks[from] && !clocks[to]) {
+        ties.add(to, received, clocks[from]->common_of(sent), Bound::kLatest);
+      }
+      if (clocks[to] && !clocks[from]) {
+        ties.add(from, sent, clocks[to]->common_of(received), Bound::kEarliest);
+      }
     }
-    if (ties.empty()) return;
-    ties.set(clocks);
+    is_changed = ties.set(clocks, takes_wide);
   }
 }
 
@@ -125,20 +148,20 @@ void follow_cameras(const CaptureEvidence& evidence, RoughClocks& clocks) {
   const auto tie = [&](std::uint32_t camera, DeviceTime device, SteadyTime steady) {
     const std::optional<RoughClock>& host = clocks[evidence.layout().cameras[camera].host];
     ties.add(hosts + camera, count_of(device),
-             host ? host->common_of(count_of(steady)) : count_of(steady));
+             host ? host->common_of(count_of(steady)) : count_of(steady), Bound::kLatest);
   };
   for (const ClockPollEvidence& poll : evidence.polls()) tie(poll.camera, poll.device, poll.t1);
   for (const FrameEvidence& frame : evidence.frames())
     tie(frame.camera, frame.sensor, frame.arrival);
-  ties.set(clocks);
+  ties.set(clocks, true);
 }
 
 std::vector<RoughClock> rough_clocks(const CaptureEvidence& evidence) {
   RoughClocks clocks(evidence.clocks());
   clocks[0] = RoughClock{};
-  follow_messages(evidence, clocks);
+  follow_messages(evidence, clocks, false);
   align_by_first_arrivals(evidence, clocks);
-  follow_messages(evidence, clocks);
+  follow_messages(evidence, clocks, true);
   follow_cameras(evidence, clocks);
   std::vector<RoughClock> rough;
   rough.reserve(clocks.size());

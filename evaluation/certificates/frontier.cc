@@ -1,5 +1,7 @@
 #include "evaluation/certificates/frontier.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "algorithms/ports/assert.h"
@@ -21,6 +23,12 @@ void Distances::close() {
   }
 }
 
+TooManyInstants::TooManyInstants()
+    : std::runtime_error(fmt::format(
+          "certificates: found more than {} instants that wait for another, allowed: stamps that "
+          "order the clocks; is a clock in the recording reset, or a message's stamp far off?",
+          FrontierWalk::kMostLive)) {}
+
 FrontierWalk::FrontierWalk(const FactOrder& order, Direction direction)
     : order_(order),
       direction_(direction),
@@ -33,6 +41,7 @@ std::optional<std::uint32_t> FrontierWalk::take_next() {
   const std::size_t point = next_;
   next_ += is_forward ? std::size_t{1} : ~std::size_t{0};
   ++taken_;
+  if (graph_.live().size() > kMostLive) throw TooManyInstants();
   const ClockPoint& taken = order_.points()[point];
   const ClockGraph::Point here = graph_.advance(taken.clock, taken.local);
   for (const std::uint32_t fact : is_forward ? order_.opened_by(point) : order_.closed_by(point)) {

@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "algorithms/certificates/clock_graph.h"
@@ -62,8 +63,16 @@ struct Frontier {
   Distances distances{0};
 };
 
+// More instants matter at once than kMostLive: clocks that nothing orders, or stamps that are far
+// off. The work would grow with the square of their number.
+class TooManyInstants : public std::runtime_error {
+ public:
+  TooManyInstants();
+};
+
 class FrontierWalk {
  public:
+  static constexpr std::size_t kMostLive = 4000;
   enum class Direction : std::uint8_t { kForward, kBackward };
   static constexpr Direction kForward = Direction::kForward;
   static constexpr Direction kBackward = Direction::kBackward;
@@ -71,7 +80,7 @@ class FrontierWalk {
   FrontierWalk(const FactOrder& order, Direction direction);
 
   // Takes the next point, which is next(). The fact that contradicts what is known, if any; then
-  // the walk is over.
+  // the walk is over. Throws TooManyInstants.
   std::optional<std::uint32_t> take_next();
   std::size_t next() const { return next_; }
   std::size_t taken() const { return taken_; }

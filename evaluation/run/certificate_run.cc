@@ -15,6 +15,7 @@
 
 #include "evaluation/certificates/certified_scoring.h"
 #include "evaluation/certificates/contradiction.h"
+#include "evaluation/certificates/frontier.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/statistics/statistics.h"
 
@@ -208,11 +209,15 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
       kept.set = set;
     };
   }
-  const CertifiedCapture found = certify(evidence, order, sets, options.horizon, keep);
-  if (found.contradiction) {
-    part.contradicted = {contradicted(seed, evidence, order, *found.contradiction)};
-  } else {
-    add_sets(found, sets, evidence, part);
+  try {
+    const CertifiedCapture found = certify(evidence, order, sets, options.horizon, keep);
+    if (found.contradiction) {
+      part.contradicted = {contradicted(seed, evidence, order, *found.contradiction)};
+    } else {
+      add_sets(found, sets, evidence, part);
+    }
+  } catch (const TooManyInstants& problem) {
+    part.problem = problem.what();
   }
   std::ranges::stable_sort(part.pairs, {}, &CertifiedPair::set);
   return part;
