@@ -7,7 +7,7 @@
 // Stamps count from 1970 in the files. In a recording of a simulated world, whose programs see its
 // own calendar, they are shifted to the clocks of the recording.
 //
-// Errors: scenarios::InputError: what evaluation/certificates/exchange_log.h has, and for no or
+// Errors: scenarios::InputError: what evaluation/stability/exchange_log.h has, and for no or
 // another host.
 #pragma once
 

@@ -52,6 +52,7 @@ class InterruptibleSource : public RecordingSource {
     cancellable.cancel = &interrupt_flag;
     return source_->record(cancellable, watched);
   }
+  bool runs_host_sync() const override { return source_->runs_host_sync(); }
 
  private:
   std::unique_ptr<RecordingSource> source_;

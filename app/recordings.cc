@@ -89,6 +89,7 @@ class CheckedSource final : public RecordingSource {
     }
     return cost;
   }
+  bool runs_host_sync() const override { return source_->runs_host_sync(); }
 
  private:
   void check_needs(const evaluation::PipelineChoice& choice, const InputCheck& check) const {

@@ -251,6 +251,7 @@ class RecordedSource final : public RecordingSource {
     }
     return cost;
   }
+  bool runs_host_sync() const override { return false; }
 
  private:
   const RecordingFolder& folder_;

@@ -10,6 +10,12 @@ namespace {
 constexpr const char* kGnssClock = "GNSS";
 constexpr const char* kPulseClock = "PPS";
 
+// No clock of a rig counts that; sums with it would not fit.
+bool is_far(Nanoseconds count) {
+  constexpr Nanoseconds kFar = std::chrono::hours(24 * 365 * 70);
+  return count > kFar || count < -kFar;
+}
+
 }  // namespace
 
 void EvidenceCounts::operator+=(const EvidenceCounts& other) {
@@ -58,6 +64,9 @@ void CaptureEvidence::on_event(const RecordingEvent& event) {
           },
           [&](const PulseSighting& pulse) {
             if (!assumptions_.pulse_late_us) return void(++counts_.unused_pulses);
+            if (is_far(pulse.gnss) || is_far(pulse.seen.time_since_epoch())) {
+              return void(++counts_.unusable_messages);
+            }
             add_pulse(pulse.host, outside(kGnssClock, true), pulse.gnss, {pulse.seen, pulse.seen});
           },
           [&](const DevicePoll& poll) {

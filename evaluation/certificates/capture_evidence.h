@@ -28,7 +28,7 @@
 #include "algorithms/certificates/stamped_facts.h"
 #include "algorithms/device_time/unwrap.h"
 #include "evaluation/certificates/assumptions.h"
-#include "evaluation/certificates/exchange_log.h"
+#include "evaluation/stability/exchange_log.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {

@@ -48,6 +48,7 @@ class StreamSource final : public RecordingSource {
   Nanoseconds first_arrival_range() const;
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override;
+  bool runs_host_sync() const override { return false; }
 
  private:
   struct Place {

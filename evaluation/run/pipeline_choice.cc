@@ -519,7 +519,7 @@ class ProgramWatch final : public ForwardingSink {
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
                          RecordingSink& sink, WorldObserver* observer,
                          const ShareDone& share_done) {
-  if (!choice.problem.empty()) throw RecordingFailed(choice.problem);
+  if (!choice.problem.empty() && source.runs_host_sync()) throw RecordingFailed(choice.problem);
   const std::unique_ptr<HostSync> host_sync = choice.host_sync.make();
   std::unique_ptr<CaptureAlignment> alignment;
   if (choice.is_steered()) {

@@ -45,7 +45,7 @@ struct LogLine {
   bool locked = true;
   // What may be the date at which a collector of logs had the line, where times count from a boot.
   std::string_view written{};
-  // What an exchange has besides (certificates/exchange_log.h): its delay, or its four stamps; and
+  // What an exchange has besides (stability/exchange_log.h): its delay, or its four stamps; and
   // whether the point is a pulse, of which the clock's reading is known.
   std::optional<double> delay_s{};
   std::optional<std::array<HostTime, 4>> stamps{};

@@ -99,10 +99,10 @@ class RawstatsLines final : public LogLines {
       stamps[i] = HostTime(*stamp - k1900To1970);
     }
     if (!is_whole || stamps[3] < stamps[0] || stamps[2] < stamps[1]) return skip();
-    const Nanoseconds late = (stamps[1] - stamps[0]) + (stamps[2] - stamps[3]);
+    const double late_s = to_seconds(stamps[1] - stamps[0]) + to_seconds(stamps[2] - stamps[3]);
     return LogLine{.format = "ntpd_rawstats",
                    .name = words[2],
-                   .point = {statistics_time_of(words, place), 0 - to_seconds(late) / 2},
+                   .point = {statistics_time_of(words, place), 0 - late_s / 2},
                    .stamps = stamps};
   }
 

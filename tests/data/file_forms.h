@@ -101,6 +101,13 @@ inline std::map<std::string, std::string> daemon_files() {
          return fmt::format("60200 {}.031 {:.9f} 13.77 0.00035 0.013 6", 80000 + 16 * i,
                             1e-9 * offset_ns(i));
        })},
+      {"rawstats", repeated([](int i) {
+         const double sent_s = 3934440000 + 16 * i;
+         const double offset_s = 1e-9 * offset_ns(i);
+         return fmt::format("60557 {}.160 192.0.2.1 192.0.2.2 {:.6f} {:.6f} {:.6f} {:.6f}",
+                            43200 + 16 * i, sent_s + 0.1, sent_s + 0.1002 + offset_s,
+                            sent_s + 0.1003 + offset_s, sent_s + 0.1005);
+       })},
       {"peerstats", repeated([](int i) {
          return fmt::format("60200 {}.031 {} 961a {:.9f} 0.0 0.00025 0.00009", 80000 + 16 * i,
                             i % 2 == 0 ? "127.127.28.0" : "192.0.2.1", 1e-9 * offset_ns(i));

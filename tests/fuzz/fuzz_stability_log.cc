@@ -1,11 +1,15 @@
-// The reader of clock logs and what is calculated from them: any bytes are either refused with an
-// InputError or have finite results.
+// The readers of clock logs and what is calculated from them: any bytes are either refused with an
+// InputError or have finite results, and exchanges that fit an evidence.
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
+#include "evaluation/certificates/capture_evidence.h"
+#include "evaluation/certificates/fact_order.h"
+#include "evaluation/stability/exchange_log.h"
 #include "evaluation/stability/log_stability.h"
 #include "scenarios/loader.h"
 
@@ -33,6 +37,26 @@ simbench::evaluation::ClockLogOptions options_of(std::size_t size) {
   return options;
 }
 
+// Two hosts that were recorded from 2024 on, for a day.
+void use_exchanges(std::string_view text) {
+  using namespace simbench;
+  const evaluation::ExchangeLog log = evaluation::parse_exchange_log(text, "fuzz.log");
+  evaluation::Assumptions assumed;
+  assumed.pulse_late_us = 50;
+  assumed.estimated_stamp_ms = 1;
+  evaluation::CaptureEvidence evidence(assumed, StreamKind::kDepth);
+  evidence.on_start({.hosts = 2, .cameras = {{0}}});
+  const HostTime begin(std::chrono::seconds(1'725'000'000));
+  for (const std::uint32_t host : {0U, 1U}) {
+    for (const auto at : {std::chrono::hours(0), std::chrono::hours(24)}) {
+      evidence.on_event(ClockAdjustment{host, SteadyTime(at), begin + at, begin + at, 0});
+    }
+    evidence.add(host, log, {});
+  }
+  const evaluation::FactOrder order(evidence);
+  if (order.clocks() < 3) std::abort();
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
@@ -42,6 +66,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto log = simbench::evaluation::parse_clock_log(text, "fuzz.log", options_of(size));
     const auto found = simbench::evaluation::stability_of_log(log, {.remove_frequency = true});
     expect_finite(found.stability);
+  } catch (const simbench::scenarios::InputError&) {
+  }
+  try {
+    use_exchanges(text);
   } catch (const simbench::scenarios::InputError&) {
   }
   return 0;

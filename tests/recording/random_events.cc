@@ -126,7 +126,7 @@ struct Same {
   bool operator()(const ExchangeEvent& a, const ExchangeEvent& b) const {
     const auto all = [](const ExchangeEvent& e) {
       const Exchange& x = e.exchange;
-      return members(e.host, x.peer, x.t1, x.t2, x.t3, x.t4);
+      return members(e.host, x.peer, x.t1, x.t2, x.t3, x.t4, x.is_estimated);
     };
     return all(a) == all(b);
   }
@@ -160,6 +160,10 @@ struct Same {
     };
     return all(a) == all(b);
   }
+  bool operator()(const PulseSighting& a, const PulseSighting& b) const {
+    const auto all = [](const PulseSighting& p) { return members(p.host, p.seen, p.gnss); };
+    return all(a) == all(b);
+  }
   template <class A, class B>
   bool operator()(const A&, const B&) const {
     return false;
@@ -170,7 +174,7 @@ struct Same {
 
 KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
   const auto host = [&] { return any_number<std::uint32_t>(random) % bounds.hosts; };
-  switch (random() % 10) {
+  switch (random() % 11) {
     case 0: {
       PulseTruth event;
       event.pulse = any_number<std::int64_t>(random);
@@ -206,6 +210,7 @@ KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
       event.exchange.t2 = maybe_time(random);
       event.exchange.t3 = maybe_time(random);
       event.exchange.t4 = maybe_time(random);
+      event.exchange.is_estimated = random() % 2 == 0;
       return event;
     }
     case 4:
@@ -234,6 +239,13 @@ KeptEvent random_event(Random& random, const RandomEventBounds& bounds) {
       return ProgramFailure{
           host(),           any_text(random), Nanoseconds(any_number<std::int64_t>(random)),
           any_text(random), any_text(random), any_text(random)};
+    case 9: {
+      PulseSighting event;
+      event.host = host();
+      set_any(event.seen, random);
+      event.gnss = Nanoseconds(any_number<std::int64_t>(random));
+      return event;
+    }
     default:
       return any_frame(random, bounds.cameras);
   }

@@ -186,6 +186,59 @@ TEST_F(CertifyCommand, BadInputIsNamed) {
   refused({"certify", "scale_18000cam_6000host_45fps"},
           "found 6000 hosts and 18000 cameras, allowed: 1000 together");
   refused({"certify", "18cam_6host_45fps_lan", "--pipelines", "nothing"}, "nothing");
+  refused(rig({"--clock-log", "0=rawstats"}),
+          "--clock-log: found the scenario 18cam_6host_45fps_lan, allowed: a folder");
+  refused(rig({"--host-address", "0=10.0.0.1"}), "--clock-log");
+}
+
+// Pulses of PPS lines prove nothing until it is known how late hosts see them.
+TEST_F(CertifyCommand, PulsesTieHosts) {
+  const std::vector<std::string> rig = {"certify",     "18cam_6host_45fps_lan_hardware_clocks",
+                                        "--pipelines", "gnss+two_way_poll_calibrated+yoon2021",
+                                        "--set",       "/timeline/frames=20",
+                                        "--json"};
+  const ProgramResult without = run(rig);
+  ASSERT_EQ(without.status, 0) << without.err;
+  const Json unknown = Json::parse(without.out)["rows"][0];
+  EXPECT_EQ(unknown["certified_ms"]["p50"], nullptr);
+  EXPECT_GT(unknown["unused_pulses"], 300);
+  std::vector<std::string> stated = rig;
+  stated.insert(stated.end(), {"--pulse-late-us", "200"});
+  const ProgramResult with = run(stated);
+  ASSERT_EQ(with.status, 0) << with.err;
+  const Json known = Json::parse(with.out)["rows"][0];
+  EXPECT_EQ(known["pulses"], unknown["unused_pulses"]);
+  EXPECT_LT(known["certified_ms"]["max"].get<double>(), 2);
+  EXPECT_EQ(known["truth_outside"], 0);
+}
+
+// A log of a recording: of which host, of one capture, of exchanges.
+TEST_F(CertifyCommand, LogsThatProveNothingAreNamed) {
+  ASSERT_EQ(run({"record", "--scenario", "18cam_6host_45fps_lan", "--pipelines",
+                 "two_way_hull,chrony_lan+two_way_poll+yoon2021", "--set", "/timeline/frames=5",
+                 "-o", "monday"})
+                .status,
+            0);
+  file("tracking.log",
+       "2024-09-03 10:00:00 192.168.1.1 2 4.100 0.030 1.200e-06 N 1 8.1e-07 -5.9e-08 3.7e-04 "
+       "4.7e-04 9.0e-03\n");
+  const auto refused = [&](std::vector<std::string> options, const std::string& message) {
+    options.insert(options.begin(), {"certify", "monday"});
+    const ProgramResult result = run(options);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, AllOf(StartsWith("error: "), HasSubstr(message)));
+  };
+  refused({"--clock-log", "0=tracking.log"}, "found 2 captures, allowed: one");
+  const std::vector<std::string> one = {"--pipelines", "two_way_hull", "--clock-log"};
+  const auto with = [&](const std::string& log) {
+    std::vector<std::string> options = one;
+    options.push_back(log);
+    return options;
+  };
+  refused(with("tracking.log"), "--clock-log: found 'tracking.log', allowed: HOST=FILE");
+  refused(with("6=tracking.log"), "HOST from 0 to 5");
+  refused(with("0=tracking.log"), "tracking.log:1: found tracking.log of chrony, which has no");
+  refused(with("0=no_such.log"), "no_such.log");
 }
 
 }  // namespace

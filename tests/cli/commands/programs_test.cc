@@ -67,6 +67,38 @@ TEST_F(ProgramsCommand, ThePythonExampleSynchronisesCameras) {
   EXPECT_TRUE(std::filesystem::exists(folder() / "logs/cristian/seed1/host1/0_python3.log"));
 }
 
+// ntpd writes down what it exchanged: that proves how far frames are apart, and the truth lies
+// within.
+TEST_F(ProgramsCommand, WhatNtpdLoggedCertifiesItsRecording) {
+  write("ntpd.json",
+        {{"master", {{"ntpd", "-n", "-c", "{files}/server.conf"}}},
+         {"slave", {{"ntpd", "-n", "-g", "-c", "{files}/client.conf"}}},
+         {"files",
+          {{"server.conf", "server 127.127.1.0\nfudge 127.127.1.0 stratum 1\nrestrict default\n"},
+           {"client.conf",
+            "server {master} iburst minpoll 3 maxpoll 4\nrestrict default\n"
+            "statsdir {files}/\nstatistics rawstats\n"
+            "filegen rawstats file rawstats type none enable\n"}}},
+         {"run_before_capture_s", 300}});
+  const ProgramResult record =
+      run({"record", "--scenario", "18cam_6host_45fps_lan", "--program", "ntpd=ntpd.json",
+           "--pipelines", "ntpd", "--program-log", "logs", "--set", "/cameras/count=6", "--set",
+           "/hosts/count=2", "--set", "/timeline/frames=45", "-o", "monday"});
+  ASSERT_EQ(record.status, 0) << record.err;
+  const ProgramResult without = run({"certify", "monday", "--json"});
+  ASSERT_EQ(without.status, 0) << without.err;
+  EXPECT_EQ(Json::parse(without.out)["rows"][0]["certified_ms"]["p95"], nullptr);
+  const ProgramResult with =
+      run({"certify", "monday", "--json", "--clock-log", "1=logs/ntpd/seed1/host1/rawstats",
+           "--host-address", "0=10.0.0.1"});
+  ASSERT_EQ(with.status, 0) << with.err;
+  const Json row = Json::parse(with.out)["rows"][0];
+  EXPECT_GT(row["messages"], 10);
+  EXPECT_EQ(row["contradicted"], Json::array());
+  EXPECT_LT(row["certified_ms"]["p95"].get<double>(), 5);
+  EXPECT_EQ(row["truth_outside"], 0);
+}
+
 TEST_F(ProgramsCommand, ABuiltInNameIsARowOfTheLeaderboard) {
   const ProgramResult result = clocks({"--program", "chronyd"});
   ASSERT_EQ(result.status, 0) << result.err;

@@ -10,6 +10,7 @@
 
 #include "algorithms/device_time/yoon2021.h"
 #include "evaluation/run/evaluate.h"
+#include "recording/event.h"
 #include "scenarios/loader.h"
 #include "tests/evaluation/test_scenario.h"
 #include "tests/nonempty.h"
@@ -295,6 +296,27 @@ TEST(PipelineChoiceTest, AnAlgorithmThatCannotBeMadeIsRefused) {
   odd.push_back({"/algorithms/test_fussy/number", "3"});
   EXPECT_EQ(problem_with(odd),
             "--set /algorithms/test_fussy/number=3: found 3, allowed: even numbers");
+}
+
+// Programs that are not there: no capture can be made, but one that was recorded is played.
+TEST(PipelineChoice, ARecordingNeedsNoPrograms) {
+  class Played final : public RecordingSource {
+   public:
+    explicit Played(bool runs) : runs_(runs) {}
+    RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+      return TestSource().record(request, sink);
+    }
+    bool runs_host_sync() const override { return runs_; }
+
+   private:
+    bool runs_;
+  };
+  PipelineChoice choice = choose_pipelines(test_scenario(), {"arrival"}).front();
+  choice.problem = "ntpd is not there";
+  KeptRecording kept;
+  Played world(true), recording(false);
+  EXPECT_THROW(record_run(world, choice, 1, kept), RecordingFailed);
+  EXPECT_NO_THROW(record_run(recording, choice, 1, kept));
 }
 
 }  // namespace

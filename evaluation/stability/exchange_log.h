@@ -3,12 +3,13 @@
 // - ntpd: rawstats, which has the four stamps as ntpd read them.
 // - chrony: measurements.log, which has the offset and the delay of each exchange, and its time in
 //   whole seconds. chronyd corrects its readings by what it still has to slew, which the log does
-//   not say, so they are estimates (LoggedExchange::is_estimated).
+//   not say, so they are estimates (LoggedExchange::is_estimated). That is taken to be no more
+//   than the largest offset of the exchange and the eight before it, which is an assumption.
 // - chrony: refclocks.log, the raw samples of pulses (PPS): the clock's reading at a full second.
 //
 // Other logs of clocks say how far a program thinks that its clock is off, which proves nothing;
-// they are refused by name. So are lines that chronyd's tests refused, and exchanges without all
-// stamps or whose stamps go back, left out and counted. A last line without its line end is left
+// they are refused by name. Lines that chronyd's tests refused, and exchanges without all stamps or
+// whose stamps go back, are left out and counted. A last line without its line end is left
 // out, with a note.
 //
 //   const ExchangeLog log = read_exchange_log("/var/log/ntpsec/rawstats");

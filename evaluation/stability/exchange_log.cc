@@ -1,14 +1,16 @@
-#include "evaluation/certificates/exchange_log.h"
+#include "evaluation/stability/exchange_log.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
 #include "evaluation/stability/log_lines.h"
+#include "recording/counted.h"
 #include "recording/line_reader.h"
 #include "recording/text_fields.h"
 #include "scenarios/loader.h"
@@ -21,12 +23,14 @@ constexpr const char* kAllowed =
 
 // chrony's time of an exchange is a whole second, somewhere between its first and last stamp.
 constexpr Nanoseconds kSecond = std::chrono::seconds(1);
+// Offsets and delays beyond 11 days are those of clocks that were not set.
+constexpr double kFarS = 1e6;
 // What chrony prints has four digits.
 constexpr double kPrinted = 5e-4;
 
 Nanoseconds from_seconds(double seconds) { return from_ms(seconds * 1e3); }
 
-// Of an exchange only the offset and the delay are known: both stamps of the server are one.
+// Only the offset and the delay of the exchange are known: both stamps of the server are one.
 LoggedExchange exchange_of(const LogLine& line, double delay_s) {
   const Nanoseconds offset = from_seconds(-line.point.error_s);
   const Nanoseconds delay = std::max(from_seconds(delay_s), Nanoseconds(0));
@@ -49,9 +53,14 @@ LoggedPulse pulse_of(const LogLine& line) {
   return {std::string(line.name), HostTime(second - offset), second};
 }
 
-void add(const LogLine& line, ExchangeLog& log) {
+bool is_near(double seconds) { return std::abs(seconds) <= kFarS; }
+
+// False for clocks that never were set, which prove nothing.
+bool keep(const LogLine& line, ExchangeLog& log) {
+  if (!is_near(line.point.error_s) || !is_near(line.delay_s.value_or(0))) return false;
   if (line.stamps) {
     const auto& [t1, t2, t3, t4] = *line.stamps;
+    if (!is_near(to_seconds(t4 - t1)) || !is_near(to_seconds(t3 - t2))) return false;
     LoggedExchange exchange{
         .server = std::string(line.name), .t1 = t1, .t2 = t2, .t3 = t3, .t4 = t4};
     exchange.error = Nanoseconds(1);
@@ -61,6 +70,7 @@ void add(const LogLine& line, ExchangeLog& log) {
   } else if (line.is_pulse) {
     log.pulses.push_back(pulse_of(line));
   }
+  return true;
 }
 
 // Reads all lines in the first form that has one of them.
@@ -110,7 +120,7 @@ class ExchangeLines {
           return fmt::format("{}, which has no exchanges", format.text);
         }
       } catch (const scenarios::InputError&) {
-        // Of another form, or damaged.
+        // It is of another form, or damaged.
       }
     }
     return std::nullopt;
@@ -122,16 +132,40 @@ class ExchangeLines {
   std::string damaged_{};
 };
 
+// What a program had still to slew at an exchange is no more than what it had measured before: the
+// stamps may be off by as much.
+void widen_estimates(std::vector<LoggedExchange>& exchanges) {
+  constexpr std::size_t kBefore = 8;
+  std::vector<Nanoseconds> offsets;
+  for (const LoggedExchange& exchange : exchanges) {
+    const Nanoseconds there = exchange.t2 - exchange.t1;
+    const Nanoseconds back = exchange.t3 - exchange.t4;
+    offsets.push_back(std::chrono::abs(there / 2 + back / 2));
+  }
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    if (!exchanges[i].is_estimated) continue;
+    const std::size_t first = i - std::min(i, kBefore);
+    exchanges[i].error += *std::max_element(offsets.begin() + static_cast<std::ptrdiff_t>(first),
+                                            offsets.begin() + static_cast<std::ptrdiff_t>(i + 1));
+  }
+}
+
 ExchangeLog read_all(LineReader reader) {
   ExchangeLog log{.path = reader.path()};
   try {
     ExchangeLines lines;
+    std::uint64_t far = 0;
     while (const std::optional<std::string_view> line = reader.next()) {
       const std::optional<LogLine> found = lines.read(*line, {log.path, reader.line()});
       if (!found) continue;
       log.format = found->format;
-      add(*found, log);
+      if (!keep(*found, log)) ++far;
     }
+    if (far > 0) {
+      log.notes.push_back(fmt::format("{}: {} with an offset or a delay beyond 11 days left out",
+                                      log.path, counted(far, "exchange")));
+    }
+    widen_estimates(log.exchanges);
     if (log.exchanges.empty() && log.pulses.empty()) lines.fail({log.path, reader.line()});
     for (const std::string& note : lines.notes()) log.notes.push_back(log.path + ": " + note);
     if (reader.torn()) {
