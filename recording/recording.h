@@ -248,8 +248,8 @@ class RecordingSource {
  public:
   virtual ~RecordingSource() = default;
   virtual RecordingCost record(const RecordingRequest& request, RecordingSink& sink) = 0;
-  // Whether it runs the request's host_sync; a recorded capture had its own, so that the programs of
-  // a pipeline need not be there.
+  // Whether it runs the request's host_sync; a recorded capture had its own, so that the programs
+  // of a pipeline need not be there.
   virtual bool runs_host_sync() const { return true; }
 };
 

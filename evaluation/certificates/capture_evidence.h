@@ -89,7 +89,7 @@ class CaptureEvidence final : public RecordingSink {
   const EvidenceCounts& counts() const { return counts_; }
   std::span<const OutsideClock> outside_clocks() const { return outside_; }
 
-  // Of all clocks: hosts, cameras, those outside.
+  // How many there are: hosts, cameras, those outside.
   std::size_t clocks() const { return layout_.hosts + layout_.cameras.size() + outside_.size(); }
   // The clock of an end of a message.
   std::size_t clock_of(std::uint32_t end) const {
