@@ -18,7 +18,8 @@ namespace {
 constexpr std::string_view kFrameKind = "frame";
 // The kinds of RecordingEvent, in its order.
 constexpr std::array<std::string_view, std::variant_size_v<RecordingEvent>> kKinds = {
-    "pulse", "adjustment", "poll", "exchange", "outcome", "alignment", "led", "delays", "program", "pps"};
+    "pulse",     "adjustment", "poll",   "exchange", "outcome",
+    "alignment", "led",        "delays", "program",  "pps"};
 static_assert(!kKinds.back().empty(), "every event has a kind");
 
 template <class Value, class Event>
