@@ -2,7 +2,8 @@
 // addresses that the hosts have in them: "HOST=ADDRESS".
 //
 //   const ExchangeLogs found = exchange_logs({"1=rawstats", "2=rawstats"}, {"0=192.0.2.1"}, run);
-//   options.logs = found.logs;
+//   evaluation::CertificateOptions certificates;
+//   certificates.logs = found.logs;
 //
 // Stamps count from 1970 in the files. In a recording of a simulated world, whose programs see its
 // own calendar, they are shifted to the clocks of the recording.

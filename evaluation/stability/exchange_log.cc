@@ -152,38 +152,44 @@ void widen_estimates(std::vector<LoggedExchange>& exchanges) {
 
 ExchangeLog read_all(LineReader reader) {
   ExchangeLog log{.path = reader.path()};
-  try {
-    ExchangeLines lines;
-    std::uint64_t far = 0;
-    while (const std::optional<std::string_view> line = reader.next()) {
-      const std::optional<LogLine> found = lines.read(*line, {log.path, reader.line()});
-      if (!found) continue;
-      log.format = found->format;
-      if (!keep(*found, log)) ++far;
-    }
-    if (far > 0) {
-      log.notes.push_back(fmt::format("{}: {} with an offset or a delay beyond 11 days left out",
-                                      log.path, counted(far, "exchange")));
-    }
-    widen_estimates(log.exchanges);
-    if (log.exchanges.empty() && log.pulses.empty()) lines.fail({log.path, reader.line()});
-    for (const std::string& note : lines.notes()) log.notes.push_back(log.path + ": " + note);
-    if (reader.torn()) {
-      log.notes.push_back(fmt::format(
-          "{}: the last line has no line end and may be cut; it was left out", reader.place()));
-    }
-  } catch (const LineError& error) {
-    throw scenarios::InputError(error.what());
+  ExchangeLines lines;
+  std::uint64_t far = 0;
+  while (const std::optional<std::string_view> line = reader.next()) {
+    const std::optional<LogLine> found = lines.read(*line, {log.path, reader.line()});
+    if (!found) continue;
+    log.format = found->format;
+    if (!keep(*found, log)) ++far;
+  }
+  if (log.exchanges.empty() && log.pulses.empty()) lines.fail({log.path, reader.line()});
+  widen_estimates(log.exchanges);
+  for (const std::string& note : lines.notes()) log.notes.push_back(log.path + ": " + note);
+  if (far > 0) {
+    log.notes.push_back(fmt::format("{}: {} with an offset or a delay beyond 11 days left out",
+                                    log.path, counted(far, "exchange")));
+  }
+  if (reader.torn()) {
+    log.notes.push_back(fmt::format(
+        "{}: the last line has no line end and may be cut; it was left out", reader.place()));
   }
   return log;
 }
 
+// A file that cannot be read is the user's, too.
+template <class... Source>
+ExchangeLog read_from(const Source&... source) {
+  try {
+    return read_all(LineReader(source...));
+  } catch (const LineError& error) {
+    throw scenarios::InputError(error.what());
+  }
+}
+
 }  // namespace
 
-ExchangeLog read_exchange_log(const std::string& path) { return read_all(LineReader(path)); }
+ExchangeLog read_exchange_log(const std::string& path) { return read_from(path); }
 
 ExchangeLog parse_exchange_log(std::string_view text, const std::string& path) {
-  return read_all(LineReader(path, text));
+  return read_from(path, text);
 }
 
 }  // namespace simbench::evaluation

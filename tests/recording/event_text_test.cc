@@ -149,7 +149,7 @@ TEST(EventTextTest, EveryPrefixOfALineIsSafe) {
 TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_EQ(line_error("fraem,1"),
             "column 1 (kind): found 'fraem', allowed: frame, pulse, adjustment, poll, exchange, "
-            "outcome, alignment, led, delays, program");
+            "outcome, alignment, led, delays, program, pps");
   EXPECT_EQ(line_error("poll,1x,2,3,4,5,6"),
             "column 2 (camera): found '1x', allowed: a whole number from 0 to 4294967295");
   EXPECT_EQ(line_error("poll,1,4294967296,3,4,5,6"),

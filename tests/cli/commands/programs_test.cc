@@ -79,7 +79,7 @@ TEST_F(ProgramsCommand, WhatNtpdLoggedCertifiesItsRecording) {
             "server {master} iburst minpoll 3 maxpoll 4\nrestrict default\n"
             "statsdir {files}/\nstatistics rawstats\n"
             "filegen rawstats file rawstats type none enable\n"}}},
-         {"run_before_capture_s", 300}});
+         {"run_before_capture_s", 600}});
   const ProgramResult record =
       run({"record", "--scenario", "18cam_6host_45fps_lan", "--program", "ntpd=ntpd.json",
            "--pipelines", "ntpd", "--program-log", "logs", "--set", "/cameras/count=6", "--set",

@@ -300,9 +300,9 @@ TEST(PipelineChoiceTest, AnAlgorithmThatCannotBeMadeIsRefused) {
 
 // Programs that are not there: no capture can be made, but one that was recorded is played.
 TEST(PipelineChoice, ARecordingNeedsNoPrograms) {
-  class Played final : public RecordingSource {
+  class TestRun final : public RecordingSource {
    public:
-    explicit Played(bool runs) : runs_(runs) {}
+    explicit TestRun(bool runs) : runs_(runs) {}
     RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
       return TestSource().record(request, sink);
     }
@@ -314,7 +314,7 @@ TEST(PipelineChoice, ARecordingNeedsNoPrograms) {
   PipelineChoice choice = choose_pipelines(test_scenario(), {"arrival"}).front();
   choice.problem = "ntpd is not there";
   KeptRecording kept;
-  Played world(true), recording(false);
+  TestRun world(true), recording(false);
   EXPECT_THROW(record_run(world, choice, 1, kept), RecordingFailed);
   EXPECT_NO_THROW(record_run(recording, choice, 1, kept));
 }
