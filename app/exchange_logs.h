@@ -1,7 +1,8 @@
 // Logs of exchanges as a user names them: "HOST=FILE", HOST a number of the rig's hosts, and the
 // addresses that the hosts have in them: "HOST=ADDRESS".
 //
-//   const ExchangeLogs found = exchange_logs({"1=rawstats", "2=rawstats"}, {"0=192.0.2.1"}, run);
+//   const RecordedRun monday("monday");
+//   const ExchangeLogs found = exchange_logs({"1=rawstats"}, {"0=192.0.2.1"}, monday);
 //   evaluation::CertificateOptions certificates;
 //   certificates.logs = found.logs;
 //

@@ -86,6 +86,9 @@ Task<void> PtpMaster::answer(ReceivedMessage received) {
   const std::optional<std::int64_t> arrival = stamps_.arrival(received);
   if (!arrival) co_return;
   if (request->type == PtpType::kPeerDelayRequest) {
+    // To a request that the network delivered twice there would be two answers, whose halves the
+    // slave could not tell apart: the departure of the one, the arrival of the other.
+    if (std::exchange(answered_, request->sequence) == request->sequence) co_return;
     co_await answer_peer_delay(channel(), stamps_, *request, *arrival,
                                {.sender = host_.id(), .domain = domain_of(settings_)});
     co_return;

@@ -46,6 +46,7 @@ class PtpMaster {
   MessageStamps stamps_;
   std::shared_ptr<const bool> is_ready_;
   std::uint16_t sequence_ = 0;
+  std::optional<std::uint16_t> answered_;  // the last request for a peer delay
 };
 
 // The median of the last N values: linuxptp's delay filter (N = 10).
