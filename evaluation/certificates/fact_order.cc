@@ -71,17 +71,14 @@ class RoughTies {
     return *middle;
   }
 
-  static bool is_wide(std::span<Tie> ties) {
+  static bool is_wide(std::span<const Tie> ties) {
     constexpr Nanoseconds kWide = std::chrono::seconds(1);
-    const auto earliest = std::ranges::stable_partition(
-        ties, [](const Tie& tie) { return tie.bound == Bound::kLatest; });
-    const std::span<Tie> latest(ties.begin(), earliest.begin());
-    bool is_so = false;
-    if (!latest.empty() && !earliest.empty()) {
-      is_so = middle_of(latest).ahead() - middle_of(std::span(earliest)).ahead() > kWide;
+    std::vector<Tie> latest, earliest;
+    for (const Tie& tie : ties) {
+      (tie.bound == Bound::kLatest ? latest : earliest).push_back(tie);
     }
-    std::ranges::sort(ties, {}, &Tie::at);
-    return is_so;
+    if (latest.empty() || earliest.empty()) return false;
+    return middle_of(latest).ahead() - middle_of(earliest).ahead() > kWide;
   }
 
   // Over less than kLong the delays matter more than the rate, and no clock is faster than
