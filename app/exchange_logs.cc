@@ -18,7 +18,7 @@ struct OfHost {
 
 OfHost of_host(const char* option, const char* what, const std::string& given, std::int64_t hosts) {
   const std::size_t equals = given.find('=');
-  const auto host = number_in<std::uint32_t>(std::string_view(given).substr(0, equals));
+  const auto host = number_in<std::uint32_t>(given.substr(0, equals));
   if (equals == std::string::npos || equals + 1 == given.size() || !host || *host >= hosts) {
     throw scenarios::InputError(fmt::format("{}: found {}, allowed: HOST={}, HOST from 0 to {}",
                                             option, quoted_bytes(given), what, hosts - 1));

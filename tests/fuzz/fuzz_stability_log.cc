@@ -39,12 +39,15 @@ simbench::evaluation::ClockLogOptions options_of(std::size_t size) {
 
 // Two hosts that were recorded from 2024 on, for a day.
 void use_exchanges(std::string_view text) {
-  using namespace simbench;
+  using simbench::ClockAdjustment;
+  using simbench::HostTime;
+  using simbench::SteadyTime;
+  namespace evaluation = simbench::evaluation;
   const evaluation::ExchangeLog log = evaluation::parse_exchange_log(text, "fuzz.log");
   evaluation::Assumptions assumed;
   assumed.pulse_late_us = 50;
   assumed.estimated_stamp_ms = 1;
-  evaluation::CaptureEvidence evidence(assumed, StreamKind::kDepth);
+  evaluation::CaptureEvidence evidence(assumed, simbench::StreamKind::kDepth);
   evidence.on_start({.hosts = 2, .cameras = {{0}}});
   const HostTime begin(std::chrono::seconds(1'725'000'000));
   for (const std::uint32_t host : {0U, 1U}) {
