@@ -29,7 +29,7 @@
 //
 //   const char* program = "/usr/sbin/chronyd";
 //   char* const none[] = {nullptr};
-//   Confinement confinement({.folder = "/tmp/host0", .readable = {"/usr"}});
+//   Confinement confinement({.folder = "world/host0", .readable = {"/usr"}});
 //   if (fork() == 0) {
 //     const Confinement::Failure failure = confinement.apply();
 //     if (failure.what == nullptr) execve(program, none, none);

@@ -3,7 +3,7 @@
 // A file counts with its length, or with what it takes on the disk where that is more; one with
 // several names once. Links are not followed. Counting ends where a limit is passed.
 //
-//   const int folder = open_folder_in(AT_FDCWD, "/tmp/simbench-Ab12cd/host0");
+//   const int folder = open_folder_in(AT_FDCWD, "world/host0");
 //   const FolderUse use = folder_use(folder, {});
 //   print(excess_of(use, {}));  // "made more than 4096 files"
 #pragma once

@@ -5,8 +5,8 @@
 // a folder that only root may enter, or where the user is not there (containers without all
 // numbers). It is then root without any of root's capabilities.
 //
-//   const std::string obstacle = obstacle_to_nobody({"/usr/sbin/chronyd", "/tmp/simbench/host0"});
-//   if (obstacle.empty()) give_to_nobody("/tmp/simbench/host0");
+//   const std::string obstacle = obstacle_to_nobody({"/usr/sbin/chronyd", "world/host0"});
+//   if (obstacle.empty()) give_to_nobody("world/host0");
 #pragma once
 
 #include <sys/types.h>

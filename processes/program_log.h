@@ -3,7 +3,7 @@
 // It is read by the descriptor that was opened before the program began: whatever the program then
 // puts into its folder under this name, a link, a pipe, a folder, is not looked at.
 //
-//   const int host_folder = open_folder_in(AT_FDCWD, "/tmp/simbench/host0");
+//   const int host_folder = open_folder_in(AT_FDCWD, "world/host0");
 //   ProgramLog log(host_folder, "0_chronyd.log");
 //   dup2(log.descriptor(), STDOUT_FILENO);
 //   print(log.last_line());

@@ -6,7 +6,7 @@
 // Where there is a control group (processes/control_group.h), the kernel counts too.
 //
 //   auto run = std::make_shared<RunUse>();
-//   ProgramUse use(open_folder_in(AT_FDCWD, "/tmp/simbench/host0"), getpid(), {}, run);
+//   ProgramUse use(open_folder_in(AT_FDCWD, "world/host0"), getpid(), {}, run);
 //   print(use.excess());  // "made more than 4096 files"
 #pragma once
 

@@ -4,9 +4,9 @@
 // No link is followed, nothing blocks, and neither the length of a path nor the number of
 // descriptors sets a limit.
 //
-//   const int folder = open_folder_in(AT_FDCWD, "/tmp/simbench-Ab12cd");
+//   const int folder = open_folder_in(AT_FDCWD, "world");
 //   close(folder);
-//   remove_tree("/tmp/simbench-Ab12cd");
+//   remove_tree("world");
 #pragma once
 
 #include <filesystem>

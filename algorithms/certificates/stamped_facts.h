@@ -33,6 +33,7 @@ inline constexpr Nanoseconds kSteadyStep{1};
 
 // A message, or a pulse that was seen: received after it was sent.
 struct HostMessage {
+  // Hosts of the rig; from their number on, clocks outside it.
   std::uint32_t from = 0;
   std::uint32_t to = 0;
   SteadyTime sent{};      // at the earliest, on the sender's clock

@@ -59,9 +59,9 @@ struct FramePoints {
   std::uint32_t most = 0;
 };
 
-// The rates of all clocks: as assumed, or within the assumed margin of what is
-// observed, against host 0's clock as time. A clock whose rate shows nowhere is as far from that as
-// two data sheets say.
+// The rates of all clocks: as assumed, or within the assumed margin of what is observed, against
+// host 0's clock as time. A clock whose rate shows nowhere is as far from that as two data sheets
+// say.
 std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence);
 std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_ppm,
                                    double camera_ppm);

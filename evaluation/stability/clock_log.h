@@ -7,9 +7,8 @@
 // - chrony: tracking.log (7th column, positive: fast), statistics.log (5th, positive: fast),
 //   measurements.log (12th, positive: slow), refclocks.log (raw offset, positive: slow), and
 //   `chronyc -c tracking` in a loop (last offset, positive: fast).
-// - ntpd: loopstats (3rd column), peerstats (5th), sntp's output, positive: slow; rawstats (four
-//   stamps of an exchange). ntpshmmon: the
-//   clock minus the reference's time.
+// - ntpd: loopstats (3rd column), peerstats (5th), sntp's output, positive: slow; rawstats
+//   (four stamps of an exchange). ntpshmmon: the clock minus the reference's time.
 // - others: w32tm /stripchart (also /rdtsc), positive: slow. Debug lines of systemd-timesyncd,
 //   positive: slow. The statistics of ptpd: offset from master, positive: fast.
 // - a TICC's time stamps of the pulses of a clock, once a second by each channel: early pulses are

@@ -9,8 +9,8 @@
 //
 // Other logs of clocks say how far a program thinks that its clock is off, which proves nothing;
 // they are refused by name. Lines that chronyd's tests refused, and exchanges without all stamps or
-// whose stamps go back, are left out and counted. A last line without its line end is left
-// out, with a note.
+// whose stamps go back, are left out and counted. A last line without its line end is left out,
+// with a note.
 //
 //   const ExchangeLog log = read_exchange_log("/var/log/ntpsec/rawstats");
 //   for (const LoggedExchange& exchange : log.exchanges) use(exchange.server, exchange.t1);

@@ -8,7 +8,7 @@
 // Sights are not trusted: of more than kMost files no number is kept.
 //
 //   void look(SimHost& host) {
-//     HostFiles files(host, "/tmp/host0");
+//     HostFiles files(host, "world/host0");
 //     const HostFiles::Seen seen = files.look({.device = 1, .file = 2});
 //     print(seen.number);  // 1
 //     files.stamp_all();

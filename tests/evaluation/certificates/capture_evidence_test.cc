@@ -99,7 +99,7 @@ TEST(CaptureEvidence, LoggedExchangesTieHostsThroughTheirServer) {
   EXPECT_THAT(apart_ms(evidence), DoubleNear(1.0, 0.006));
 }
 
-// The same where the server is host 0, whose system clock is the server's.
+// The server is host 0, so its stamps are of that host's system clock.
 TEST(CaptureEvidence, AServerMayBeAHost) {
   CaptureEvidence evidence = evidence_of({});
   ExchangeLog log;
