@@ -23,6 +23,7 @@ class CodedTime final : public DeviceTimeEstimator {
   }
 
   bool relative() const override { return true; }
+  bool shares_zero() const override { return true; }
 
   void on_coded_pulses(const std::shared_ptr<const CodedPulses>& pulses) override {
     pulses_ = pulses;

@@ -70,6 +70,9 @@ class DeviceTimeEstimator {
   // True if stamps count from the camera's own first frame, or from another zero that all cameras
   // share, instead of a host's zero; to combine cameras, add one common anchor.
   virtual bool relative() const { return false; }
+  // Whether the zero is one for all cameras: a host's, or another that they share. A camera's own
+  // first frame is none.
+  virtual bool shares_zero() const { return !relative(); }
   // For speed alone (estimator_bank.h): estimators like this fresh one for many cameras, or null.
   virtual std::unique_ptr<EstimatorBank> bank(std::size_t cameras) const;
 };

@@ -64,6 +64,7 @@ class RocsyncLed final : public DeviceTimeEstimator {
 
   bool offline() const override { return true; }
   bool relative() const override { return true; }
+  bool shares_zero() const override { return true; }
 
   void on_led_sighting(const LedSample& sighting) override {
     const DeviceSample sample = on_led_clock(sighting);

@@ -32,6 +32,7 @@ class Adapter : public DeviceTimeEstimator {
     inner_->on_coded_pulses(pulses);
   }
   bool relative() const override { return inner_->relative(); }
+  bool shares_zero() const override { return inner_->shares_zero(); }
 
  protected:
   virtual DeviceSample adapted(const DeviceSample& sample) const = 0;

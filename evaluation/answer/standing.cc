@@ -28,8 +28,9 @@ bool is_oracle(const HostSyncEntry* entry) {
   return entry->make(parameters)->initial_clocks() == InitialClocks::kMaster;
 }
 
-bool is_relative(const DeviceTimeEntry* entry) {
-  return entry != nullptr && entry->make(check_parameters(entry->info.parameters, {}))->relative();
+bool shares_no_zero(const DeviceTimeEntry* entry) {
+  return entry != nullptr &&
+         !entry->make(check_parameters(entry->info.parameters, {}))->shares_zero();
 }
 
 constexpr const char* kNoPureSet = "no gathered set is of one pulse";
@@ -109,7 +110,7 @@ RowStanding standing_of_stages(const Row& row, RankedBy ranked_by) {
       needs_truth(find_algorithm<GatheringEntry>(row.gathering))) {
     return RowStanding::kLimit;
   }
-  return is_relative(entry) ? RowStanding::kReference : RowStanding::kRanked;
+  return shares_no_zero(entry) ? RowStanding::kReference : RowStanding::kRanked;
 }
 
 ReasonedStanding standing_of(const Row& row, RankedBy ranked_by) {

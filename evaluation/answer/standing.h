@@ -1,7 +1,8 @@
 // What a row may be called in an answer: ranked among others, failed, a reference or a limit.
 //
 // A rig can run a pipeline if none of its stages needs the truth, its hosts do not read the
-// master's clock, and its stamps are on a clock that hosts share. The others are limits (they need
+// master's clock, and its stamps are on a clock that the cameras share: the hosts', the trigger's
+// code, one of LEDs. The others are limits (they need
 // the truth) or references (stamps that count from a camera's own first frame; where exposures are
 // ranked, cameras that follow a trigger).
 //
