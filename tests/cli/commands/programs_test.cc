@@ -70,18 +70,9 @@ TEST_F(ProgramsCommand, ThePythonExampleSynchronisesCameras) {
 // ntpd writes down what it exchanged: that proves how far frames are apart, and the truth lies
 // within.
 TEST_F(ProgramsCommand, WhatNtpdLoggedCertifiesItsRecording) {
-  write("ntpd.json",
-        {{"master", {{"ntpd", "-n", "-c", "{files}/server.conf"}}},
-         {"slave", {{"ntpd", "-n", "-g", "-c", "{files}/client.conf"}}},
-         {"files",
-          {{"server.conf", "server 127.127.1.0\nfudge 127.127.1.0 stratum 1\nrestrict default\n"},
-           {"client.conf",
-            "server {master} iburst minpoll 3 maxpoll 4\nrestrict default\n"
-            "statsdir {files}/\nstatistics rawstats\n"
-            "filegen rawstats file rawstats type none enable\n"}}},
-         {"run_before_capture_s", 600}});
+  const std::string ntpd = std::string(SIMBENCH_SOURCE_DIR) + "/examples/ntpd_rawstats.json";
   const ProgramResult record =
-      run({"record", "--scenario", "18cam_6host_45fps_lan", "--program", "ntpd=ntpd.json",
+      run({"record", "--scenario", "18cam_6host_45fps_lan", "--program", "ntpd=" + ntpd,
            "--pipelines", "ntpd", "--program-log", "logs", "--set", "/cameras/count=6", "--set",
            "/hosts/count=2", "--set", "/timeline/frames=45", "-o", "monday"});
   ASSERT_EQ(record.status, 0) << record.err;
