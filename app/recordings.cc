@@ -226,6 +226,15 @@ evaluation::Results RecordedRun::evaluate(const std::vector<std::string>& pipeli
   return results;
 }
 
+void check_evidence(const std::vector<std::string>& inputs) {
+  if (recording_folder_of(inputs)) return;
+  throw scenarios::InputError(fmt::format(
+      "{}: nothing is certain about how far frames of files are apart; found no messages between "
+      "hosts and no polls of the cameras' clocks, allowed: a folder that `simbench record` wrote, "
+      "which has both. `simbench diagnose {}` says what is likely",
+      fmt::join(inputs, " "), fmt::join(inputs, " ")));
+}
+
 bool is_recording_folder(const std::string& path) {
   const std::filesystem::path folder(path);
   return std::filesystem::exists(folder / "manifest.json") &&

@@ -98,6 +98,10 @@ class RecordedRun {
   std::uint64_t seeds_ = 1;
 };
 
+// Throws scenarios::InputError unless it is one recording folder: files have neither the hosts'
+// messages nor polls of the cameras' clocks, so that nothing is certain about their frames.
+void check_evidence(const std::vector<std::string>& inputs);
+
 // Whether the folder has a manifest and no results: a recording, and no archive of a run.
 bool is_recording_folder(const std::string& path);
 // Whether it is that, or a file of other people: anything but a folder and a .json file.

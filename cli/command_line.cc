@@ -42,15 +42,32 @@ bool names_scenario(const std::string& word) {
                             &scenarios::BuiltinScenario::name) > 0;
 }
 
-// `simbench --scenario S` and `simbench S` mean `simbench run --scenario S`. There is a first word.
-std::vector<std::string> with_default_command(CLI::App& app, std::vector<std::string> arguments) {
+// Whether the command takes a scenario by its option alone.
+bool has_scenario_option(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options({});
+  return command.get_option_no_throw("--scenario") != nullptr &&
+         std::ranges::none_of(options, &CLI::Option::get_positional);
+}
+
+// `simbench --scenario S` and `simbench S` mean `simbench run --scenario S`, and `simbench trace S`
+// means `simbench trace --scenario S`. There is a first word.
+std::vector<std::string> with_implied_words(CLI::App& app, std::vector<std::string> arguments) {
   const std::string first = arguments[1];
-  const auto at = arguments.begin() + 1;
   if (first.starts_with("-")) {
     const bool about_simbench = first == "-h" || first == "--help" || first == "--version";
-    if (!about_simbench) arguments.insert(at, cli::kDefaultCommand);
-  } else if (!cli::is_command(app, first) && names_scenario(first)) {
-    arguments.insert(at, {cli::kDefaultCommand, "--scenario"});
+    if (!about_simbench) arguments.insert(arguments.begin() + 1, cli::kDefaultCommand);
+    return arguments;
+  }
+  if (!cli::is_command(app, first)) {
+    if (names_scenario(first)) {
+      arguments.insert(arguments.begin() + 1, {cli::kDefaultCommand, "--scenario"});
+    }
+    return arguments;
+  }
+  if (arguments.size() > 2 && names_scenario(arguments[2]) &&
+      std::ranges::count(arguments, "--scenario") == 0 &&
+      has_scenario_option(*app.get_subcommand(first))) {
+    arguments.insert(arguments.begin() + 2, "--scenario");
   }
   return arguments;
 }
@@ -120,7 +137,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
     cli::print_result(cli::start_page());
     return ExitStatus::kOk;
   }
-  const std::vector<std::string> all = with_default_command(app, arguments);
+  const std::vector<std::string> all = with_implied_words(app, arguments);
   if (!all[1].starts_with("-") && !cli::is_command(app, all[1])) {
     cli::print_error(cli::unknown_command(app, all[1]), "simbench help");
     return ExitStatus::kBadInput;

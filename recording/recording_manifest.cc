@@ -271,6 +271,10 @@ RecordingManifest read_manifest(const std::string& folder) {
     throw RecordingFolderError(fmt::format(
         "{}: is no recording, it has no manifest.json; `simbench record` makes one", folder));
   }
+  if (std::filesystem::exists(folder + "/results.json", error)) {
+    throw RecordingFolderError(fmt::format(
+        "{}: is the archive of a run, and no recording; `simbench record` makes one", folder));
+  }
   try {
     return parse_manifest(file_content(path, kLargestManifest, Pipes::kRefused), path);
   } catch (const FileError& failure) {

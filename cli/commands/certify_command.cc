@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -119,6 +120,7 @@ void check_logs(const CertifyOptions& options, const app::RecordedRun& run) {
 }
 
 std::optional<evaluation::CertificateRun> certify_recording(CertifyOptions options) {
+  app::check_evidence({options.input});
   const app::RecordedRun run = app::recorded_run({options.input}, {}, {});
   evaluation::CertificateOptions& certificates = options.certificates;
   certificates.pipelines = run.chosen(certificates.pipelines);
@@ -159,8 +161,9 @@ int run_certify(CertifyOptions options) {
   std::optional<reports::OutputFile> pairs;  // refuses before the work what cannot be written
   if (!options.pairs.empty()) pairs.emplace(options.pairs);
   options.certificates.keep_pairs = pairs.has_value();
-  const auto run = app::is_recording_folder(options.input) ? certify_recording(options)
-                                                           : certify_scenario(options);
+  const bool is_recorded =
+      app::is_recording(options.input) || std::filesystem::is_directory(options.input);
+  const auto run = is_recorded ? certify_recording(options) : certify_scenario(options);
   if (!run) return kInterrupted;
   print_result_in(options.format, [&](const std::string& format) {
     return format == "json" ? reports::file_text(reports::certificate_json(*run))

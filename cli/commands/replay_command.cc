@@ -72,6 +72,7 @@ void print_notes(const app::RecordedRun& run, const evaluation::Results& results
 }
 
 int run_replay(const ReplayOptions& options) {
+  if (options.certify) app::check_evidence(options.inputs);
   app::RunArchive archive(options.command);
   archive.open(options.output);
   const std::optional<app::RecordedRun> run = recorded_run(options);

@@ -86,6 +86,7 @@ std::shared_ptr<Run> load_archive(const std::string& path) {
 }
 
 std::shared_ptr<Run> score_recording(const RecordingToScore& wanted, const Object& on_progress) {
+  if (wanted.certify) app::check_evidence(wanted.inputs);
   auto run = std::make_shared<Run>();
   run->provenance.emplace();
   run->provenance->command = wanted.command;

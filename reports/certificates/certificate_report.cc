@@ -200,8 +200,21 @@ std::string contradicted_text(const CertificateRun& run) {
   std::size_t captures = 0;
   for (const CertificateRow& row : run.rows) captures += row.contradicted.size();
   if (captures == 0) return {};
-  return fmt::format("{} contradict what is assumed, and have no certificates; see below.",
-                     counted(static_cast<std::uint64_t>(captures), "capture"));
+  return fmt::format(
+      "{} {} no certificates: what is recorded contradicts what is assumed; "
+      "see below.",
+      counted(static_cast<std::uint64_t>(captures), "capture"), captures == 1 ? "has" : "have");
+}
+
+// Why no row has a bound.
+std::string nothing_text(const CertificateRun& run) {
+  const bool is_contradicted = std::ranges::all_of(run.rows, [](const CertificateRow& row) {
+    return !row.contradicted.empty() && row.contradicted.size() == row.captures;
+  });
+  return is_contradicted ? "Nothing is certified: what is assumed contradicts every recording."
+                         : "Nothing is certified: no pipeline's recording bounds how far the "
+                           "frames of its sets "
+                           "are apart.";
 }
 
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -256,9 +269,7 @@ AnswerText certificate_answer(const CertificateRun& run) {
   AnswerText answer;
   const CertificateRow* const best = best_of(run);
   if (best == nullptr) {
-    answer.lead =
-        "Nothing is certified: no pipeline's recording bounds how far the frames of its "
-        "sets are apart.";
+    answer.lead = nothing_text(run);
   } else {
     answer.lead = fmt::format(
         "{}: in 95 % of its sets no two frames were exposed more than {} "

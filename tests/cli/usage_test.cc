@@ -147,6 +147,9 @@ TEST_F(Usage, AScenarioAloneIsRun) {
   const ProgramResult result = run(named);
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, run(stated).out);
+  std::vector<std::string> after_command = {"run", "3cam_1host_30fps"};
+  after_command.insert(after_command.end(), more.begin(), more.end());
+  EXPECT_EQ(run(after_command).out, result.out);
   file("mine.json", run({"describe", "3cam_1host_30fps", "--format", "json"}).out);
   named.front() = "mine.json";
   EXPECT_EQ(run(named).status, 0);

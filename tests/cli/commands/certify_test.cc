@@ -1,6 +1,7 @@
 // `simbench certify` through the real program.
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -89,7 +90,9 @@ TEST_F(CertifyCommand, AWrongAssumptionIsProved) {
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("Contradictions"), HasSubstr(" before it began"),
                                 HasSubstr("with rates of +-500 ppm nothing contradicts"),
-                                HasSubstr("a message sent by host")));
+                                HasSubstr("a message sent by host"),
+                                HasSubstr("what is assumed contradicts every recording"),
+                                HasSubstr("1 capture has no certificates")));
 }
 
 // A recorded folder has the certificates of its run.
@@ -239,6 +242,25 @@ TEST_F(CertifyCommand, LogsThatProveNothingAreNamed) {
   refused(with("6=tracking.log"), "HOST from 0 to 5");
   refused(with("0=tracking.log"), "tracking.log:1: found tracking.log of chrony, which has no");
   refused(with("0=no_such.log"), "no_such.log");
+}
+
+// Files of other programs have no messages and no polls; neither has a folder that is no recording.
+TEST_F(CertifyCommand, RecordingsWithoutExchangesAreNamed) {
+  file("left.csv", "counter,sensor_us,arrival_ms\n0,1000,5\n1,34333,38\n");
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, AllOf(StartsWith("error: "), HasSubstr(message)));
+  };
+  const std::string what_to_record =
+      "found no messages between hosts and no polls of the cameras' "
+      "clocks, allowed: a folder that `simbench record` wrote";
+  refused({"certify", "left.csv"}, what_to_record);
+  refused({"replay", "left.csv", "--certify"}, what_to_record);
+  ASSERT_EQ(run({"run", "3cam_1host_30fps", "--seeds", "1", "-o", "archive"}).status, 0);
+  refused({"certify", "archive"}, "archive: is the archive of a run, and no recording");
+  std::filesystem::create_directory(folder() / "empty");
+  refused({"certify", "empty"}, "empty: is no recording, it has no manifest.json");
 }
 
 }  // namespace
