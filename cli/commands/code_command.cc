@@ -39,7 +39,7 @@ int show_code(const CodeOptions& options) {
   if (!options.header.empty()) file.emplace(options.header);
   const reports::TriggerCodeResult result = app::trigger_code_of(scenario);
   std::string header;
-  if (file) header = reports::code_header(result.code, result.scenario, options.timer_hz);
+  if (file) header = reports::code_header(result, options.timer_hz);
   print_result_in(options.format, [&result](const std::string& format) {
     return format == "json" ? reports::trigger_code_json(result)
                             : reports::drawn_as(format, reports::trigger_code_document(result));

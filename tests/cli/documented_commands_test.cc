@@ -36,7 +36,7 @@ bool is_for_a_shell(const std::string& line) {
 }
 
 // A line without its comment; quotes hold a word together.
-std::vector<std::string> words_of(std::string line) {
+std::vector<std::string> words_of_line(std::string line) {
   line.resize(std::min(line.size(), line.find(" #")));
   std::vector<std::string> words;
   std::istringstream text(line);
@@ -62,7 +62,7 @@ void add_commands_of(const fs::path& page, std::vector<DocumentedCommand>& comma
       line.back() = ' ';
       line += more;
     }
-    std::vector<std::string> words = words_of(line);
+    std::vector<std::string> words = words_of_line(line);
     words.erase(words.begin());
     if (words.empty()) continue;  // `simbench` alone
     commands.push_back({fmt::format("{}:{}", page.filename().string(), number), words});
