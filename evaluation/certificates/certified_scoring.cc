@@ -75,21 +75,20 @@ std::vector<EvidenceSet> CertifiedScoring::sets() const {
 
 std::vector<double> CertifiedScoring::bounds_ms() const {
   const FactOrder order(evidence_);
-  std::vector<double> bounds;
-  CertifiedCapture found;
+  const std::vector<EvidenceSet> gathered = sets();
   try {
-    found = certify(evidence_, order, sets(), Horizon::kWhole);
+    const CertifiedCapture found = certify(evidence_, order, gathered, Horizon::kWhole);
+    if (found.contradiction) return {};
+    return certified_bounds_ms(found, gathered);
   } catch (const TooManyInstants&) {
-    return bounds;
+    return {};
   }
-  if (found.contradiction) return bounds;
-  for (const SetCertificate& set : found.sets) bounds.push_back(bound_ms(set.apart));
-  return bounds;
 }
 
 void CertifiedScoring::add_to(SeedScore& score) const {
   constexpr double kShare = 0.95;
   std::vector<double> apart_ms = bounds_ms();
+  std::erase_if(apart_ms, [](double bound) { return std::isnan(bound); });
   std::ranges::sort(apart_ms);
   const double certified_ms = quantile_of_bounds(apart_ms, kShare);
   if (std::isfinite(certified_ms)) score.certified_ms = certified_ms;
@@ -97,6 +96,16 @@ void CertifiedScoring::add_to(SeedScore& score) const {
 
 double bound_ms(Picoseconds apart) {
   return ClockGraph::is_bounded(apart) ? to_ms(apart) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> certified_bounds_ms(const CertifiedCapture& found,
+                                        std::span<const EvidenceSet> sets) {
+  std::vector<double> bounds;
+  bounds.reserve(sets.size());
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    bounds.push_back(sets[i].size() < 2 ? kNan : bound_ms(found.sets[i].apart));
+  }
+  return bounds;
 }
 
 double quantile_of_bounds(const std::vector<double>& apart_ms, double p) {

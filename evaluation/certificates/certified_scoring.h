@@ -44,8 +44,8 @@ class CertifiedScoring final : public RecordingSink {
   // The complete and partial sets. A frame belongs to one; of frames of one camera with one stamp,
   // as after a reset of its clock, the first that belongs to none is meant. O(n log n).
   std::vector<EvidenceSet> sets() const;
-  // By set, in the order of their emission: no two of its frames are further apart; infinite where
-  // nothing bounds it; empty if facts contradict each other, or are too many at once.
+  // By set, in the order of their emission (certified_bounds_ms()); empty if facts contradict each
+  // other, or are too many at once.
   std::vector<double> bounds_ms() const;
   // Who takes the scorer's place for one observer passes its sets on to this.
   ScoreObserver& observer() { return collected_; }
@@ -71,6 +71,10 @@ class CertifiedScoring final : public RecordingSink {
 
 // Infinite where nothing bounds it.
 double bound_ms(Picoseconds apart);
+// By set: no two of its frames are further apart; infinite where nothing bounds it; NaN for a set
+// of one frame, which says nothing.
+std::vector<double> certified_bounds_ms(const CertifiedCapture& found,
+                                        std::span<const EvidenceSet> sets);
 // A quantile of bounds in ascending order; infinite where the one above it is; NaN without bounds.
 double quantile_of_bounds(const std::vector<double>& apart_ms, double p);
 

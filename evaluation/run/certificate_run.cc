@@ -131,7 +131,7 @@ struct CapturePart {
   std::vector<ContradictedCapture> contradicted{};
   std::vector<double> apart_ms{};
   std::vector<CertifiedPair> pairs{};
-  std::size_t impossible_sets = 0;
+  std::size_t impossible_sets = 0, lone_frames = 0, due_pulses = 0;
   std::size_t frames = 0, frames_outside = 0;
   EvidenceCounts counts{};
   std::map<TieKey, TieSums> ties{};
@@ -141,12 +141,16 @@ void add_sets(const CertifiedCapture& found, const std::vector<EvidenceSet>& set
               const CaptureEvidence& evidence, CapturePart& part) {
   const Readings readings(evidence);
   part.impossible_sets = found.impossible_sets;
+  const std::vector<double> bounds_ms = certified_bounds_ms(found, sets);
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const SetCertificate& set = found.sets[i];
-    part.apart_ms.push_back(bound_ms(set.apart));
+    if (std::isnan(bounds_ms[i])) {
+      ++part.lone_frames;
+      continue;
+    }
+    part.apart_ms.push_back(bounds_ms[i]);
     part.frames_outside += set.frames_outside;
     part.frames += set.frames_judged;
-    if (sets[i].size() < 2) continue;
     const WeakLink& tie = set.weakest;
     TieSums& sums = part.ties[{tie.kind, tie.first, tie.second}];
     const auto age_of = [&](std::size_t member) {
@@ -190,6 +194,7 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
   const CaptureEvidence& evidence = both.evidence();
   try {
     const SeedScore score = score_run(source, choice, seed, scorer, both);
+    part.due_pulses = static_cast<std::size_t>(score.sets.due_pulses);
     if (!score.program_failures.empty()) part.problem = score.program_failures.front().how;
   } catch (const RecordingFailed& failure) {
     part.problem = failure.what();
@@ -257,6 +262,8 @@ CertificateRow row_of(const std::string& pipeline, std::span<CapturePart> parts,
     std::ranges::copy(part.apart_ms, std::back_inserter(row.apart_ms));
     std::ranges::move(part.pairs, std::back_inserter(row.pairs));
     row.impossible_sets += part.impossible_sets;
+    row.lone_frames += part.lone_frames;
+    row.due_pulses += part.due_pulses;
     row.frames += part.frames;
     row.frames_outside += part.frames_outside;
     row.counts += part.counts;

@@ -87,10 +87,13 @@ struct CertificateRow {
   std::string problem{};  // why there is nothing; empty: nothing is wrong
   std::uint64_t captures = 0;
   std::vector<ContradictedCapture> contradicted{};
-  std::vector<double> apart_ms{};  // of each set, ascending; infinite: unknown
+  std::vector<double>
+      apart_ms{};  // of each set of two frames or more, ascending; infinite: unknown
   std::vector<CertifiedPair> pairs{};
   std::size_t within = 0;           // sets within CertificateOptions::within_ms
   std::size_t impossible_sets = 0;  // that no pulses of a common trigger explain
+  std::size_t due_pulses = 0;       // that all cameras were to expose; 0: unknown
+  std::size_t lone_frames = 0;      // sets of one frame, which say nothing
   std::size_t frames = 0;           // of the sets, whose bounds the truth could break
   std::size_t frames_outside = 0;
   EvidenceCounts counts{};

@@ -64,10 +64,18 @@ std::string outside_text(const CertificateRow& row) {
   return fmt::format("{} of {}", row.frames_outside, row.frames);
 }
 
+// Whether pulses were due of which there is no set.
+bool lacks_sets(const CertificateRow& row) { return row.apart_ms.size() < row.due_pulses; }
+
+std::string sets_text(const CertificateRow& row) {
+  const std::string sets = fmt::format("{}", row.apart_ms.size());
+  return lacks_sets(row) ? fmt::format("{} of {}", sets, row.due_pulses) : sets;
+}
+
 Block certified_rows_block(const CertificateRun& run) {
   const std::vector<Field<CertificateRow>> fields = {
       pipeline_field<CertificateRow>(),
-      {{"sets"}, [](const auto& row) { return fmt::format("{}", row.apart_ms.size()); }},
+      {{"sets"}, sets_text},
       {{"certified\nmedian"},
        [](const auto& row) { return certified_text(row.certified_ms(0.5)); }},
       {{"certified\n95 %"}, [](const auto& row) { return certified_text(row.certified_ms(0.95)); }},
@@ -89,7 +97,8 @@ Block certified_rows_block(const CertificateRun& run) {
               "were, if what is assumed holds; the least such bound that follows from the "
               "recording. Truth outside: frames of the sets whose true difference to another of "
               "their set is beyond its interval, which a wrong assumption can make. Contradicted: "
-              "captures whose facts contradict each other."}};
+              "captures whose facts contradict each other. Sets: of two frames or more, of the "
+              "pulses that all cameras were to expose where there are fewer."}};
 }
 
 Block ties_block(const CertificateRun& run) {
@@ -148,6 +157,11 @@ std::optional<Block> problems_block(const CertificateRun& run) {
       block.items.push_back(
           fmt::format("{}: {} of the logs from before or after the capture", row.pipeline,
                       counted(static_cast<std::uint64_t>(row.counts.logged_outside), "reading")));
+    }
+    if (row.lone_frames > 0) {
+      block.items.push_back(
+          fmt::format("{}: {} of one frame, which nothing is apart from", row.pipeline,
+                      counted(static_cast<std::uint64_t>(row.lone_frames), "set")));
     }
     if (row.impossible_sets > 0) {
       block.items.push_back(
@@ -234,6 +248,7 @@ Json certified_row_json(const CertificateRow& row) {
                {"problem", row.problem.empty() ? Json(nullptr) : Json(row.problem)},
                {"captures", row.captures},
                {"sets", row.apart_ms.size()},
+               {"due_pulses", row.due_pulses == 0 ? Json(nullptr) : Json(row.due_pulses)},
                {"certified_ms",
                 {{"p50", finite_json(row.certified_ms(0.5))},
                  {"p95", finite_json(row.certified_ms(0.95))},
@@ -249,7 +264,8 @@ Json certified_row_json(const CertificateRow& row) {
                {"logged_outside", row.counts.logged_outside},
                {"frames", row.frames == 0 ? Json(nullptr) : Json(row.frames)},
                {"truth_outside", row.frames == 0 ? Json(nullptr) : Json(row.frames_outside)},
-               {"impossible_sets", row.impossible_sets}};
+               {"impossible_sets", row.impossible_sets},
+               {"lone_frames", row.lone_frames}};
   json["weakest"] = Json::array();
   for (const WeakTie& tie : row.weakest) json["weakest"].push_back(tie_json(tie));
   json["contradicted"] = Json::array();
@@ -277,6 +293,11 @@ AnswerText certificate_answer(const CertificateRun& run) {
         best->pipeline, time_text(best->certified_ms(0.95)));
     const WeakTie& tie = best->weakest.front();
     answer.add("Weakest", fmt::format("{}; {}.", tie_text(tie), cure_text(*best, tie)));
+    if (lacks_sets(*best)) {
+      answer.add("Missing", fmt::format("it has sets of {} of {} pulses due; of the others nothing "
+                                        "is certified.",
+                                        best->apart_ms.size(), best->due_pulses));
+    }
   }
   answer.add("Truth", truth_text(run));
   answer.add("Contradictions", contradicted_text(run));

@@ -4,13 +4,14 @@
 //
 // JSON: {"schema_version", "version", "commit", "answer" (reports/text/answer_json.h), "scenario",
 // "seeds": {"first", "count"}, "horizon": "whole" | "causal", "within_ms", "assumptions": {name:
-// value}, "rows": [{"pipeline", "problem": text or null, "captures", "sets", "certified_ms":
-// {"p50", "p95", "max"}, "within", "within_share", "messages", "unusable_messages",
-// "estimated_exchanges", "polls", "pulses", "unused_pulses", "logged_outside", "frames",
-// "truth_outside", "impossible_sets", "weakest": [{"tie": "camera" | "hosts", "first", "second",
-// "sets", "width_ms", "age_s", "drift_share"}], "contradicted": [{"seed", "before_ms", "chain":
-// [text], "possible_ppm"}]}]}; what is unknown or does not exist is null, "frames" and
-// "truth_outside" too where no truth is known, or nothing bounds it.
+// value}, "rows": [{"pipeline", "problem": text or null, "captures", "sets", "due_pulses",
+// "certified_ms": {"p50", "p95", "max"}, "within", "within_share", "messages",
+// "unusable_messages", "estimated_exchanges", "polls", "pulses", "unused_pulses",
+// "logged_outside", "frames", "truth_outside", "impossible_sets", "lone_frames", "weakest":
+// [{"tie": "camera" | "hosts", "first", "second", "sets", "width_ms", "age_s", "drift_share"}],
+// "contradicted": [{"seed", "before_ms", "chain": [text], "possible_ppm"}]}]}; "sets" have two
+// frames or more; what is unknown or does not exist is null, "frames" and "truth_outside" too where
+// no truth is known, or nothing bounds it.
 #pragma once
 
 #include "evaluation/run/certificate_run.h"

@@ -244,6 +244,47 @@ TEST_F(CertifyCommand, LogsThatProveNothingAreNamed) {
   refused(with("0=no_such.log"), "no_such.log");
 }
 
+// A set of one frame is within any bound, which says nothing of a rig.
+TEST_F(CertifyCommand, SetsOfOneFrameAreLeftOut) {
+  const std::vector<std::string> alone = {
+      "18cam_6host_45fps_lan", "--pipelines", "chrony",         "--set",
+      "/cameras/count=1",      "--set",       "/hosts/count=1", "--set",
+      "/timeline/frames=20"};
+  std::vector<std::string> arguments = {"certify", "--format", "table"};
+  arguments.insert(arguments.end(), alone.begin(), alone.end());
+  const ProgramResult text = run(arguments);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("Nothing is certified: "),
+                              HasSubstr("chrony: 20 sets of one frame")));
+  arguments[2] = "json";
+  const Json row = Json::parse(run(arguments).out)["rows"][0];
+  EXPECT_EQ(row["sets"], 0);
+  EXPECT_EQ(row["lone_frames"], 20);
+  EXPECT_TRUE(row["certified_ms"]["max"].is_null());
+  arguments.insert(arguments.end(), {"--require", "0"});
+  EXPECT_EQ(run(arguments).status, 3);
+}
+
+// Where most pulses have no set, the bound of the rest says little.
+TEST_F(CertifyCommand, PulsesWithoutASetAreCounted) {
+  const std::vector<std::string> rig = {
+      "certify", "18cam_6host_45fps_lan", "--pipelines", "chrony",
+      "--set",   "/cameras/count=3",      "--set",       "/hosts/count=1",
+      "--set",   "/timeline/frames=100",  "--set",       "/cameras/drop_probability=0.5"};
+  const ProgramResult text = run(rig);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr(" of 100 pulses due; of the others nothing is certified"));
+  std::vector<std::string> as_json = rig;
+  as_json.emplace_back("--json");
+  const Json row = Json::parse(run(as_json).out)["rows"][0];
+  EXPECT_EQ(row["due_pulses"], 100);
+  EXPECT_LT(row["sets"], 50);
+  EXPECT_THAT(run({"certify", "18cam_6host_45fps_lan", "--pipelines", "chrony", "--set",
+                   "/timeline/frames=20"})
+                  .out,
+              Not(HasSubstr("pulses due")));
+}
+
 // Files of other programs have no messages and no polls; neither has a folder that is no recording.
 TEST_F(CertifyCommand, RecordingsWithoutExchangesAreNamed) {
   file("left.csv", "counter,sensor_us,arrival_ms\n0,1000,5\n1,34333,38\n");
