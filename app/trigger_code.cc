@@ -62,6 +62,7 @@ reports::TriggerCodeResult trigger_code_of(const Scenario& scenario) {
   }
   const CodeDecoderSettings settings = decoder_settings(scenario);
   reports::TriggerCodeResult result{.scenario = scenario.name,
+                                    .derivation = scenario.derivation,
                                     .model = *scenario.trigger.code,
                                     .code = pulses->code,
                                     .settings = settings,

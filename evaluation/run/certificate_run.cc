@@ -313,7 +313,8 @@ CertificateRun certify_pipelines(const scenarios::Scenario& scenario,
                              make_worker)) {
     throw RecordingCancelled();
   }
-  CertificateRun run{.scenario = scenario.name, .options = options, .rows = {}};
+  CertificateRun run{
+      .scenario = scenario.name, .derivation = scenario.derivation, .options = options, .rows = {}};
   for (std::size_t i = 0; i < choices.size(); ++i) {
     run.rows.push_back(row_of(choices[i].pipeline.name,
                               std::span(parts).subspan(i * options.seeds, options.seeds), options));

@@ -28,6 +28,7 @@
 #include "evaluation/certificates/assumptions.h"
 #include "evaluation/certificates/certify.h"
 #include "evaluation/run/evaluate.h"
+#include "scenarios/derivation.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
@@ -106,6 +107,7 @@ struct CertificateRow {
 
 struct CertificateRun {
   std::string scenario;
+  scenarios::Derivation derivation{};  // of that scenario
   CertificateOptions options;
   std::vector<CertificateRow> rows;
 };

@@ -121,15 +121,24 @@ std::string part_line(const scenarios::Part& part) {
                      part.price_source);
 }
 
+// " with /cameras/exposure_ms=1"
+std::string changes_text(const Advice& advice) {
+  std::vector<std::string> sets;
+  for (const scenarios::Override& set : advice.request.rig.sets) {
+    sets.push_back(fmt::format("{}={}", set.pointer, set.value));
+  }
+  return sets.empty() ? "" : fmt::format(" with {}", fmt::join(sets, ", "));
+}
+
 Block assumptions_block(const Advice& advice) {
   Block block{.heading = "What is assumed"};
   block.prose = {fmt::format(
-      "The world is {}: physically nominal, fitted to no rig. Prices are rough classes of parts, "
+      "The world is {}{}: physically nominal, fitted to no rig. Prices are rough classes of parts, "
       "without cameras, trigger, cables and work; availability, your cables and your building are "
       "not known. A host synchronisation that is installed badly is worse than here. Device times "
       "by polls need a program that reads the cameras' clocks; calibrated ones need the delays of "
       "the camera model, measured as a careful laboratory does.",
-      advice.options.front().option.camera.world)};
+      advice.options.front().option.camera.world, changes_text(advice))};
   std::vector<std::string> seen;
   for (const OptionAdvice& each : advice.options) {
     const RigOption& option = each.option;
@@ -280,6 +289,10 @@ Json advice_json(const Advice& advice) {
        {"options", Json::array()}});
   for (const Requirement& each : advice.request.requirements) {
     root["requirements"].push_back(each.text);
+  }
+  root["sets"] = Json::array();
+  for (const scenarios::Override& set : advice.request.rig.sets) {
+    root["sets"].push_back({{"pointer", set.pointer}, {"value", set.value}});
   }
   root["tolerances"] = need_text(advice);
   if (advice.recommended) root["recommended"] = *advice.recommended;

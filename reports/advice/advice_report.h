@@ -2,10 +2,10 @@
 // then the rigs from the cheapest on, then what was assumed.
 //
 // JSON: {"schema_version", "version", "commit", "answer" (reports/text/answer_json.h), "cameras",
-// "rate_hz", "requirements": [text], "seeds", "recommended": a place in options or null,
-// "fails_first": {"metric", "stage", "share"} or null, "rare": null or as of rare_json(),
-// "options": [{"rig", "hosts", "cameras_per_host", "parts": [name], "price_low_eur",
-// "price_high_eur", "settled", "pipelines":
+// "rate_hz", "requirements": [text], "sets": [{"pointer", "value"}], "seeds", "recommended": a
+// place in options or null, "fails_first": {"metric", "stage", "share"} or null, "rare": null or as
+// of rare_json(), "options": [{"rig", "hosts", "cameras_per_host", "parts": [name],
+// "price_low_eur", "price_high_eur", "settled", "pipelines":
 // [{"pipeline", "met", "seeds", "probability", "low", "high", "margin", "frames_dropped",
 // "medians": {id: value}}]}]}; the pipelines from the best on.
 #pragma once

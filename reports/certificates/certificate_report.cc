@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "recording/counted.h"
 #include "recording/text_fields.h"
+#include "reports/results/csv.h"
+#include "reports/results/json.h"
 #include "reports/text/answer_json.h"
 #include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
@@ -305,9 +308,10 @@ AnswerText certificate_answer(const CertificateRun& run) {
 }
 
 Document certificate_document(const CertificateRun& run) {
-  Document document{.title = fmt::format("{}: {}", run.scenario,
+  Document document{.title = fmt::format("{}: {}", scenarios::named(run.scenario, run.derivation),
                                          counted_seeds(run.options.first_seed, run.options.seeds))};
   document.head = paragraphs(certificate_answer(run));
+  std::ranges::move(scenarios::derivation_lines(run.derivation), std::back_inserter(document.head));
   document.blocks.push_back(certified_rows_block(run));
   add(contradictions_block(run), document.blocks);
   add(problems_block(run), document.blocks);
@@ -319,7 +323,9 @@ Document certificate_document(const CertificateRun& run) {
 std::string pairs_csv(const CertificateRun& run) {
   std::string text =
       "pipeline,seed,set,first_camera,first_sensor_us,second_camera,second_sensor_us,least_ms,"
-      "most_ms,truth_ms\n";
+      "most_ms,truth_ms";
+  const LineEnds ends(run.derivation);
+  text += ends.header;
   constexpr std::int64_t kNanosecondsAMicrosecond = 1000;
   const auto us = [](DeviceTime sensor) {
     return nanoseconds_of(sensor) / kNanosecondsAMicrosecond;
@@ -327,10 +333,10 @@ std::string pairs_csv(const CertificateRun& run) {
   for (const CertificateRow& row : run.rows) {
     const std::string pipeline = csv_cell(row.pipeline);
     for (const evaluation::CertifiedPair& pair : row.pairs) {
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", pipeline, pair.seed, pair.set,
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{}{}", pipeline, pair.seed, pair.set,
                           pair.first_camera, us(pair.first_sensor), pair.second_camera,
                           us(pair.second_sensor), csv_cell(pair.least_ms), csv_cell(pair.most_ms),
-                          pair.truth_ms ? csv_cell(*pair.truth_ms) : "");
+                          pair.truth_ms ? csv_cell(*pair.truth_ms) : "", ends.line);
     }
   }
   return text;
@@ -340,6 +346,7 @@ Json certificate_json(const CertificateRun& run) {
   Json root = new_document();
   root["answer"] = answer_json(certificate_answer(run));
   root["scenario"] = run.scenario;
+  state_derivation(run.derivation, root);
   root["seeds"] = {{"first", run.options.first_seed}, {"count", run.options.seeds}};
   root["horizon"] = run.options.horizon == evaluation::Horizon::kWhole ? "whole" : "causal";
   root["within_ms"] = run.options.within_ms;

@@ -70,6 +70,7 @@ MeasuredStudy measured_study(const Results& results, const std::string& date,
                       .machine = machine,
                       .scenario = results.scenario,
                       .commit = std::string(commit()),
+                      .changed = scenarios::changed_text(results.derivation),
                       .rows = {}};
   for (const Row& row : results.rows) study.rows.push_back(measured_pipeline(row));
   return study;
@@ -98,6 +99,7 @@ std::string measured_study_json(const MeasuredStudy& study) {
   Json root = {{"schema_version", kSchemaVersion}, {"date", study.date},
                {"machine", study.machine},         {"scenario", study.scenario},
                {"commit", study.commit},           {"rows", Json::array()}};
+  if (!study.changed.empty()) root["changed"] = study.changed;
   for (const MeasuredPipeline& pipeline : study.rows) {
     Json row = {
         {"pipeline", pipeline.pipeline}, {"notes", pipeline.notes}, {"seeds", Json::array()}};
@@ -125,6 +127,7 @@ MeasuredStudy read_measured_study(const std::string& path, const std::string& sc
                       .machine = root["machine"].text(),
                       .scenario = root["scenario"].text(),
                       .commit = root["commit"].text(),
+                      .changed = root.has("changed") ? root["changed"].text() : std::string(),
                       .rows = {}};
   if (!scenario.empty() && study.scenario != scenario) {
     root["scenario"].refuse(fmt::format("'{}', the scenario it is to be compared with", scenario));

@@ -41,7 +41,8 @@ struct MeasuredStudy {
   std::string date;     // in any format
   std::string machine;  // that was measured on
   std::string scenario;
-  std::string commit;  // of the program that measured
+  std::string commit;     // of the program that measured
+  std::string changed{};  // how its world differed from the scenario's (scenarios/derivation.h)
   std::vector<MeasuredPipeline> rows;
 };
 

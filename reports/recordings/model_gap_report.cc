@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "evaluation/model/evidence.h"
 #include "evaluation/scoring/program_failures.h"
 #include "recording/version.h"
+#include "reports/results/json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
@@ -156,11 +158,26 @@ Json evidence_json() {
   return stages;
 }
 
+// Where a world is not the scenario's own, which of both it is.
+std::vector<std::string> world_lines(const ModelGapReport& report) {
+  const std::string measured = report.measured.changed;
+  const std::string simulated = scenarios::changed_text(report.derivation);
+  if (measured == simulated)
+    return measured.empty() ? std::vector<std::string>() : std::vector{measured};
+  const auto line = [](const char* which, const std::string& changed) {
+    return fmt::format("{}: {}", which, changed.empty() ? "the scenario itself" : changed);
+  };
+  return {line("Measured", measured), line("Simulated", simulated),
+          "They are not the same world: the gap is not the model's error."};
+}
+
 }  // namespace
 
 ModelGapReport model_gap_report(const MeasuredStudy& measured,
                                 const evaluation::Results& simulated) {
-  ModelGapReport report{.measured = measured, .simulated_seeds = simulated.seed_count};
+  ModelGapReport report{.measured = measured,
+                        .derivation = simulated.derivation,
+                        .simulated_seeds = simulated.seed_count};
   evaluation::Results without_failed = simulated;
   for (evaluation::Row& row : without_failed.rows) {
     const std::string failure = evaluation::program_failure_text(row);
@@ -182,6 +199,7 @@ Document model_gap_document(const ModelGapReport& report) {
       .head = {fmt::format("Measured {} on {} (simbench {}); simulated with {} (simbench {}).",
                            measured.date, measured.machine, measured.commit,
                            counted(report.simulated_seeds, "seed"), commit())}};
+  std::ranges::move(world_lines(report), std::back_inserter(document.head));
   document.blocks.push_back({.heading = "The gap",
                              .table = gap_table(report.rows),
                              .prose = {summary_line(report.rows)}});
@@ -196,17 +214,20 @@ Document model_gap_document(const ModelGapReport& report) {
 
 std::string model_gap_json(const ModelGapReport& report) {
   const MeasuredStudy& measured = report.measured;
-  Json root = {
-      {"schema_version", 1},
-      {"version", version()},
-      {"commit", commit()},
-      {"scenario", measured.scenario},
-      {"measured_on",
-       {{"date", measured.date}, {"machine", measured.machine}, {"commit", measured.commit}}},
-      {"simulated_seeds", report.simulated_seeds},
-      {"rows", Json::array()},
-      {"notes", notes_of(report)},
-      {"evidence", evidence_json()}};
+  Json root = {{"schema_version", 1},
+               {"version", version()},
+               {"commit", commit()},
+               {"scenario", measured.scenario},
+               {"measured_on",
+                {{"date", measured.date},
+                 {"machine", measured.machine},
+                 {"commit", measured.commit},
+                 {"changed", measured.changed.empty() ? Json(nullptr) : Json(measured.changed)}}},
+               {"simulated_seeds", report.simulated_seeds},
+               {"rows", Json::array()},
+               {"notes", notes_of(report)},
+               {"evidence", evidence_json()}};
+  state_derivation(report.derivation, root);
   for (const ModelGapRow& row : report.rows) root["rows"].push_back(gap_row_json(row));
   return file_text(root);
 }

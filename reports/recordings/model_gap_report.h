@@ -2,8 +2,9 @@
 // between them, and the evidence for each stage of the model.
 //
 // JSON: {"schema_version": 1, "version", "commit", "scenario",
-//        "measured_on": {"date", "machine", "commit"}, "simulated_seeds": ...,
-//        "rows": [{"pipeline", "metric",
+//        "based_on", "changed", "published_left_out": see state_derivation(); of what was
+//        simulated, "measured_on": {"date", "machine", "commit", "changed"}, "simulated_seeds":
+//        ..., "rows": [{"pipeline", "metric",
 //                  "measured": {"count", "median", "p05", "p25", "p75", "p95", "values"},
 //                  "simulated": likewise, "ks", "ks_critical", "significant", "median_gap",
 //                  "within_20_percent": true, false or null}],
@@ -26,6 +27,7 @@ namespace simbench::reports {
 
 struct ModelGapReport {
   MeasuredStudy measured;
+  scenarios::Derivation derivation{};  // of the simulated scenario
   std::uint64_t simulated_seeds = 0;
   std::vector<evaluation::ModelGapRow> rows{};
   // Rows whose programs ended too early in the simulation, which have no values there.

@@ -115,8 +115,8 @@ std::string code_header(const TriggerCodeResult& result, double timer_hz) {
       "#define CODE_TIMER_HZ {2:.0f}UL\n"
       "#define CODE_INTERVALS {5}UL\n\n"
       "static const uint{6}_t code_interval_ticks[CODE_INTERVALS] = {{\n",
-      result.scenario, version(), timer_hz, span_s, static_cast<double>(ticks.size()) / span_s,
-      ticks.size(), bits);
+      scenarios::named(result.scenario, result.derivation), version(), timer_hz, span_s,
+      static_cast<double>(ticks.size()) / span_s, ticks.size(), bits);
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const bool ends_line = i % kNumbersInLine == kNumbersInLine - 1 || i + 1 == ticks.size();
     text += fmt::format("{}{},{}", i % kNumbersInLine == 0 ? "    " : "", ticks[i],

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recording/version.h"
+#include "reports/results/json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
@@ -123,7 +124,9 @@ Block modes_block(const TriggerCodeResult& result) {
 }  // namespace
 
 Document trigger_code_document(const TriggerCodeResult& result) {
-  return {.title = fmt::format("The coded trigger of {}", result.scenario),
+  return {.title = fmt::format("The coded trigger of {}",
+                               scenarios::named(result.scenario, result.derivation)),
+          .head = scenarios::derivation_lines(result.derivation),
           .blocks = {{.heading = "The code", .table = properties_table(result)},
                      forecast_block(result),
                      modes_block(result)}};
@@ -137,6 +140,7 @@ std::string trigger_code_json(const TriggerCodeResult& result) {
                {"version", version()},
                {"commit", commit()},
                {"scenario", result.scenario}};
+  state_derivation(result.derivation, root);
   root["code"] = {{"kind", to_text(result.model.kind)},
                   {"order", result.model.order},
                   {"length_pulses", code.length()},

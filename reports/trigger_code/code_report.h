@@ -3,6 +3,7 @@
 // JSON, schema_version 1; members are only ever added:
 //
 //   {"schema_version": 1, "kind": "trigger_code", "version", "commit", "scenario",
+//    "based_on", "changed", "published_left_out": see state_derivation() (reports/results/json.h),
 //    "code": {"kind", "order", "length_pulses", "span_s", "shift_us", "pulses_per_symbol",
 //             "rate_hz", "sent_share", "shortest_interval_us", "longest_interval_us"},
 //    "search": {"noise_us", "rate_error_ppm", "error_probability" asked for, "places" tried,
@@ -35,6 +36,7 @@ struct CodeMode {
 
 struct TriggerCodeResult {
   std::string scenario;
+  scenarios::Derivation derivation{};  // of that scenario
   scenarios::TriggerCodeModel model;
   TriggerCode code;
   CodeDecoderSettings settings;

@@ -114,6 +114,47 @@ TEST_F(ChangedWorld, IsStatedInBudgetsAndDescriptions) {
               AllOf(HasSubstr(kHeading), HasSubstr("changed: /trigger/rate_hz 45 → 30")));
 }
 
+TEST_F(ChangedWorld, IsStatedInCertificatesAndCodes) {
+  const ProgramResult certified =
+      run({"certify", "18cam_6host_45fps", "--pipelines", "yoon2021_both", "--set",
+           "/timeline/frames=5", "--pairs", "pairs.csv"});
+  EXPECT_THAT(certified.out,
+              AllOf(HasSubstr(kHeading), HasSubstr("changed: /timeline/frames 480 → 5")))
+      << certified.err;
+  EXPECT_THAT(content("pairs.csv"), AllOf(HasSubstr(",truth_ms,changed\n"),
+                                          HasSubstr(",changed: /timeline/frames 480 → 5\n")));
+  const std::vector<std::string> code = {"code", "18cam_6host_90fps_coded", "--set",
+                                         "/trigger/code/shift_us=40"};
+  const char* const change = "changed: /trigger/code/shift_us 50 → 40";
+  EXPECT_THAT(run(code).out,
+              AllOf(HasSubstr("18cam_6host_90fps_coded (changed)"), HasSubstr(change)));
+  std::vector<std::string> exported = code;
+  exported.insert(exported.end(), {"--json", "--export", "intervals.h"});
+  EXPECT_EQ(Json::parse(run(exported).out)["changed"].size(), 1U);
+  EXPECT_THAT(content("intervals.h"), HasSubstr("of 18cam_6host_90fps_coded (changed), made"));
+}
+
+TEST_F(ChangedWorld, IsStatedInAdvice) {
+  const ProgramResult advice =
+      run({"advise", "--require", "amd<5ms", "--cameras", "2", "--hosts", "1", "--seeds", "8",
+           "--set", "/cameras/oscillator/skew_sigma_ppm=90"});
+  EXPECT_THAT(advice.out, HasSubstr("The world is 18cam_6host_45fps_lan with "
+                                    "/cameras/oscillator/skew_sigma_ppm=90: "))
+      << advice.err;
+}
+
+TEST_F(ChangedWorld, IsStatedBesideAMeasuredOne) {
+  file("study.json", R"({"schema_version": 1, "date": "2026-11-23", "machine": "any", "commit": "1",
+    "scenario": "6node_relay", "rows": [{"pipeline": "yoon2021_both", "notes": [],
+    "seeds": [{"seed": 1, "amd_ms": 1, "rmdv_ms": 1, "absolute_error_ms": 1, "host_error_ms": 1}]}]})");
+  const ProgramResult gap = run({"validate-model", "--scenario", "6node_relay", "--measured",
+                                 "study.json", "--seeds", "2", "--set", "/timeline/frames=20"});
+  EXPECT_THAT(gap.out, AllOf(HasSubstr("Measured: the scenario itself"),
+                             HasSubstr("Simulated: changed: /timeline/frames "),
+                             HasSubstr("not the same world")))
+      << gap.err;
+}
+
 TEST_F(ChangedWorld, OfAnOwnScenarioNamesItsBase) {
   file("mine.json", R"({"base": "18cam_6host_45fps", "name": "mine", "summary": "My own words.",
                         "hosts": {"count": 3}, "cameras": {"count": 9}})");
