@@ -32,7 +32,7 @@ Json certificate_json(const evaluation::CertificateRun& run);
 //   pipeline,seed,set,first_camera,first_sensor_us,second_camera,second_sensor_us,least_ms,most_ms,
 //   truth_ms
 //
-// Of a changed world each line ends with what was changed (LineEnds).
+// Lines of a changed world end with what was changed (LineEnds).
 std::string pairs_csv(const evaluation::CertificateRun& run);
 
 }  // namespace simbench::reports
