@@ -78,7 +78,10 @@ struct FrameTruth {
   SteadyTime own_steady{};  // the same host's steady clock at mid-exposure
   HostTime delivered{};     // master's clock when the host had the frame
 
-  TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
+  TrueTime mid_exposure() const {
+    return TrueTime(Nanoseconds(std::midpoint(exposure_start.time_since_epoch().count(),
+                                              exposure_end.time_since_epoch().count())));
+  }
 };
 
 // The truth of a trigger pulse; simulated captures only.

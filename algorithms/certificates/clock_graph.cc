@@ -61,14 +61,16 @@ ClockGraph::Point ClockGraph::advance(std::size_t clock, Nanoseconds local) {
   const Nanoseconds step = local - places_[before].local;
   const std::int64_t ahead = rates_[clock].most(step).count();
   const std::int64_t back = -rates_[clock].least(step).count();
+  go_further(std::max(std::abs(ahead), std::abs(back)));
   const std::int64_t* const from_before = row(before);
   for (std::size_t i = 0; i < stride_; ++i) {
-    from_here[i] = from_before[i] >= kFar ? kUnbounded.count() : from_before[i] + back;
+    from_here[i] =
+        from_before[i] >= kFar ? kUnbounded.count() : std::max(from_before[i] + back, -kFar);
   }
   for (const Point other : live_) {
     std::int64_t* const from_other = row(other);
     const std::int64_t here = from_other[before];
-    from_other[point] = here >= kFar ? kUnbounded.count() : here + ahead;
+    from_other[point] = here >= kFar || ahead >= kFar ? kUnbounded.count() : here + ahead;
   }
   from_here[point] = 0;
   if (places_[before].kept == 0) remove(before);
@@ -85,22 +87,30 @@ void ClockGraph::release(Point point) {
 
 bool ClockGraph::bound(Point from, Point to, Picoseconds most) {
   const std::int64_t fact = most.count();
-  if (row(from)[to] <= fact) return true;
+  if (row(from)[to] <= fact || fact >= kFar) return true;
   const std::int64_t return_way = row(to)[from];
   if (return_way < kFar && return_way + fact < 0) return false;
+  go_further(-fact);
+  is_long() ? shorten<true>(from, to, fact) : shorten<false>(from, to, fact);
+  return true;
+}
+
+template <bool kIsLong>
+void ClockGraph::shorten(Point from, Point to, std::int64_t fact) {
   const std::int64_t* const onward = row(to);
   for (const Point other : live_) {
     std::int64_t* const distances = row(other);
     if (distances[from] >= kFar) continue;
-    const std::int64_t there = distances[from] + fact;
+    std::int64_t there = distances[from] + fact;
+    if (kIsLong) there = std::max(there, -kFar);
     if (there >= distances[to]) continue;  // then no way over the fact is shorter
     for (std::size_t j = 0; j < stride_; ++j) {
-      const std::int64_t sum = there + onward[j];
+      std::int64_t sum = there + onward[j];
+      if (kIsLong) sum = std::max(sum, -kFar);
       const bool is_shorter = onward[j] < kFar && sum < distances[j];
       distances[j] = is_shorter ? sum : distances[j];
     }
   }
-  return true;
 }
 
 }  // namespace simbench

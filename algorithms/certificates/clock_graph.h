@@ -30,11 +30,12 @@
 //
 // Exact: integers of picoseconds, rates rounded outward once a point. Complexity, for n live
 // points: advance() O(n); bound() O(1) for a fact that tells nothing new, else O(n^2); most() O(1).
-// Memory O(n^2). Span: 50 days. Source: Patt-Shamir and Rajsbaum, STOC 1994; Ostrovsky and
+// Memory O(n^2). Span: 20 days. Source: Patt-Shamir and Rajsbaum, STOC 1994; Ostrovsky and
 // Patt-Shamir, "Optimal and efficient clock synchronization under drifting clocks", PODC 1999 (live
 // points).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -76,6 +77,11 @@ class ClockGraph {
   // The least upper bound of t(to) - t(from); its negation bounds t(from) - t(to) from below.
   Picoseconds most(Point from, Point to) const { return Picoseconds(row(from)[to]); }
 
+  // Whether differences may be so far below 0 that sums of them would not fit 64 bits. Then they
+  // count as less far, as an upper bound may; it is the case only of some weeks, or of stamps that
+  // are broken.
+  bool is_long() const { return reach_ >= kFar / 2; }
+
   // In no order.
   const std::vector<Point>& live() const { return live_; }
   Nanoseconds local_of(Point point) const { return places_[point].local; }
@@ -85,6 +91,7 @@ class ClockGraph {
   static constexpr Point kNone = ~Point{0};
   // What is at least this far is unbounded: sums with it may be somewhat less than kUnbounded.
   static constexpr std::int64_t kFar = kUnbounded.count() / 2;
+  static_assert(RateBound::kLongest.count() == kFar);
 
   struct Place {
     std::uint32_t clock = 0;
@@ -96,6 +103,9 @@ class ClockGraph {
   const std::int64_t* row(Point point) const {
     return distances_.data() + std::size_t{point} * stride_;
   }
+  template <bool kIsLong>
+  void shorten(Point from, Point to, std::int64_t fact);
+  void go_further(std::int64_t way) { reach_ += std::clamp(way, std::int64_t{0}, kFar - reach_); }
   Point take_place();
   void grow();
   void remove(Point point);
@@ -107,6 +117,7 @@ class ClockGraph {
   std::vector<Point> live_;
   std::vector<std::uint32_t> place_in_live_;
   std::size_t stride_ = 0;
+  std::int64_t reach_ = 0;               // no difference is further below 0, ps
   std::vector<std::int64_t> distances_;  // [from][to], ps; of a free place without a meaning
 };
 

@@ -70,10 +70,12 @@ void OnlineCertificates::release(const Ticket& ticket) { graph_.release(ticket.p
 
 Picoseconds OnlineCertificates::later_by(const Ticket& from, const Ticket& to) const {
   const Picoseconds points = graph_.most(from.point, to.point);
-  if (!ClockGraph::is_bounded(points)) return ClockGraph::kUnbounded;
   const RateBound& rate_from = graph_.rate_of(rig_.hosts + from.camera);
-  const RateBound& rate_to = graph_.rate_of(rig_.hosts + to.camera);
-  return points + rate_to.most(to.most) - rate_from.least(from.least);
+  const Picoseconds after = graph_.rate_of(rig_.hosts + to.camera).most(to.most);
+  if (!ClockGraph::is_bounded(points) || !ClockGraph::is_bounded(after)) {
+    return ClockGraph::kUnbounded;
+  }
+  return points + after - rate_from.least(from.least);
 }
 
 Picoseconds OnlineCertificates::apart(std::span<const Ticket> frames) const {

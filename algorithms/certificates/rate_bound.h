@@ -10,9 +10,11 @@
 //   const RateBound measured(12.5, 2.0);                 // 12.5 ppm fast, within 2
 //
 // Source: the drift constraints of Patt-Shamir and Rajsbaum, "A theory of clock synchronization",
-// STOC 1994. Range: 0 <= rate error < 10^6 ppm; intervals up to 50 days either way.
+// STOC 1994. A rate error may be anything from 0 on: a clock that may stand still bounds nothing.
+// What may be longer than kLongest either way counts as kLongest, and is no bound.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <concepts>
@@ -35,13 +37,14 @@ constexpr double to_ms(Duration d) {
 
 class RateBound {
  public:
+  static constexpr Picoseconds kLongest{std::int64_t{1} << 61};  // 26 days
+
   explicit RateBound(double ppm) : RateBound(0, ppm) {}
   // About a rate that is known within `ppm`.
   RateBound(double middle_ppm, double ppm)
-      : least_(kOne + static_cast<std::int64_t>(std::floor((middle_ppm - ppm) * 1e3))),
-        most_(kOne + static_cast<std::int64_t>(std::ceil((middle_ppm + ppm) * 1e3))) {
-    SIMBENCH_ASSERT(ppm >= 0 && least_ > 0 && most_ < 2 * kOne,
-                    "a rate error is from 0 to below 10^6 ppm");
+      : least_(counted(std::floor((middle_ppm - ppm) * 1e3))),
+        most_(counted(std::ceil((middle_ppm + ppm) * 1e3))) {
+    SIMBENCH_ASSERT(ppm >= 0, "a rate error is not negative");
   }
 
   // Half of the width between the two bounds.
@@ -53,11 +56,19 @@ class RateBound {
 
  private:
   static constexpr std::int64_t kOne = 1'000'000'000;
+  // A clock that hardly moves bounds nothing, one that races next to nothing.
+  static constexpr double kFewest = 1, kMost = 1e15;
+
+  static std::int64_t counted(double gained_ns) {
+    return static_cast<std::int64_t>(std::clamp(kOne + gained_ns, kFewest, kMost));
+  }
 
   std::int64_t most_ps(std::int64_t local_ns) const {
     const Int128 scaled = Int128{local_ns} * 1000 * kOne;
-    if (local_ns >= 0) return saturate((scaled + least_ - 1) / least_);
-    return saturate(scaled / most_);  // division rounds towards zero, which is up
+    const Int128 most = local_ns >= 0 ? (scaled + least_ - 1) / least_
+                                      : scaled / most_;  // division rounds towards zero, so up
+    constexpr Int128 kEnd = kLongest.count();
+    return static_cast<std::int64_t>(std::clamp(most, -kEnd, kEnd));
   }
 
   std::int64_t least_, most_;  // what it counts in a second, ns

@@ -1,7 +1,10 @@
 #include "evaluation/certificates/capture_evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <variant>
 
 namespace simbench::evaluation {
@@ -10,11 +13,14 @@ namespace {
 constexpr const char* kGnssClock = "GNSS";
 constexpr const char* kPulseClock = "PPS";
 
-// No clock of a rig counts that; sums with it would not fit.
-bool is_far(Nanoseconds count) {
-  constexpr Nanoseconds kFar = std::chrono::hours(24 * 365 * 70);
-  return count > kFar || count < -kFar;
-}
+// No clock of a rig counts that; sums with it would not fit 64 bits. System clocks and
+// some cameras' count from 1970.
+constexpr Nanoseconds kYear = std::chrono::hours(24 * 365);
+bool is_past_years(Nanoseconds count, Nanoseconds most) { return count > most || count < -most; }
+bool is_far(SteadyTime at) { return is_past_years(at.time_since_epoch(), 40 * kYear); }
+bool is_far(DeviceTime at) { return is_past_years(Nanoseconds(nanoseconds_of(at)), 80 * kYear); }
+bool is_far(HostTime at) { return is_past_years(at.time_since_epoch(), 80 * kYear); }
+bool is_far(const std::optional<HostTime>& at) { return at && is_far(*at); }
 
 }  // namespace
 
@@ -45,6 +51,10 @@ void CaptureEvidence::on_frames(std::span<const FrameRecord> frames,
   for_each_frame(frames, truths, [&](const FrameRecord& frame, const FrameTruth* truth) {
     const DeviceTime sensor = registers_[frame.camera].unwrap(frame.sensor);
     if (frame.stream != stream_) return;
+    if (is_far(sensor) || is_far(frame.arrival_steady) ||
+        (truth != nullptr && is_past_years(truth->mid_exposure().time_since_epoch(), 80 * kYear))) {
+      return note_broken(fmt::format("a frame of camera {}", frame.camera));
+    }
     FrameEvidence& kept = frames_.emplace_back();
     kept.camera = frame.camera;
     kept.exposure_us = frame.exposure_us;
@@ -59,28 +69,41 @@ void CaptureEvidence::on_event(const RecordingEvent& event) {
   std::visit(
       Overloaded{
           [&](const ClockAdjustment& adjustment) {
+            if (is_far(adjustment.at) || is_far(adjustment.before) || is_far(adjustment.after)) {
+              return note_broken(fmt::format("an adjustment of host {}", adjustment.host));
+            }
             facts_->add(adjustment);
             note_time(adjustment.host, adjustment.at);
           },
           [&](const PulseSighting& pulse) {
             if (!assumptions_.pulse_late_us) return void(++counts_.unused_pulses);
-            if (is_far(pulse.gnss) || is_far(pulse.seen.time_since_epoch())) {
-              return void(++counts_.unusable_messages);
+            if (is_far(HostTime(pulse.gnss)) || is_far(pulse.seen)) {
+              return note_broken(fmt::format("a pulse of host {}", pulse.host));
             }
             add_pulse(pulse.host, outside(kGnssClock, true), pulse.gnss, {pulse.seen, pulse.seen});
           },
           [&](const DevicePoll& poll) {
+            const DeviceTime device = registers_[poll.camera].unwrap(poll.device);
+            if (is_far(device) || is_far(poll.t0_steady) || is_far(poll.t1_steady)) {
+              return note_broken(fmt::format("a poll of camera {}", poll.camera));
+            }
             ++counts_.polls;
             note_time(layout_.cameras[poll.camera].host, poll.t1_steady);
-            polls_.push_back({poll.camera, registers_[poll.camera].unwrap(poll.device),
-                              poll.t0_steady, poll.t1_steady});
+            polls_.push_back({poll.camera, device, poll.t0_steady, poll.t1_steady});
           },
           [&](const ExchangeEvent& reported) { add_exchange(reported.host, reported.exchange); },
           [](const auto&) {}},
       event);
 }
 
+void CaptureEvidence::note_broken(std::string where) {
+  if (broken_.empty()) broken_ = std::move(where);
+}
+
 void CaptureEvidence::add_exchange(std::uint32_t host, const Exchange& exchange) {
+  if (is_far(exchange.t1) || is_far(exchange.t2) || is_far(exchange.t3) || is_far(exchange.t4)) {
+    return note_broken(fmt::format("an exchange of host {}", host));
+  }
   const ExchangeMessages found = facts_->messages_of(host, exchange);
   counts_.unusable_messages += found.unusable;
   if (found.is_left_out) ++counts_.estimated_exchanges;
@@ -129,6 +152,7 @@ bool CaptureEvidence::is_of_capture(std::uint32_t host, const SteadyRange& range
 
 std::optional<CaptureEvidence::PlacedStamp> CaptureEvidence::placed(
     std::uint32_t end, HostTime stamp, const LoggedExchange& exchange) const {
+  if (is_far(stamp)) return std::nullopt;
   const Nanoseconds error =
       exchange.error + from_ms(assumptions_.host_stamp_ms +
                                (exchange.is_estimated ? *assumptions_.estimated_stamp_ms : 0));
@@ -185,7 +209,9 @@ void CaptureEvidence::add(std::uint32_t host, const ExchangeLog& log,
                exchange);
   }
   for (const LoggedPulse& pulse : log.pulses) {
-    const auto seen = facts_->when(host, pulse.read, from_ms(assumptions_.host_stamp_ms));
+    const auto seen = is_far(pulse.read) || is_far(HostTime(pulse.second))
+                          ? std::nullopt
+                          : facts_->when(host, pulse.read, from_ms(assumptions_.host_stamp_ms));
     if (!seen || !is_of_capture(host, *seen)) {
       ++counts_.logged_outside;
     } else if (!assumptions_.pulse_late_us) {
@@ -194,6 +220,13 @@ void CaptureEvidence::add(std::uint32_t host, const ExchangeLog& log,
       add_pulse(host, outside(kPulseClock, true), pulse.second, *seen);
     }
   }
+}
+
+std::string CaptureEvidence::name_of(std::size_t clock) const {
+  const std::size_t outside = layout_.hosts + layout_.cameras.size();
+  if (clock < layout_.hosts) return fmt::format("host {}", clock);
+  if (clock < outside) return fmt::format("camera {}", clock - layout_.hosts);
+  return outside_[clock - outside].name;
 }
 
 }  // namespace simbench::evaluation

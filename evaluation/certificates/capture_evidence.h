@@ -95,8 +95,14 @@ class CaptureEvidence final : public RecordingSink {
   std::size_t clock_of(std::uint32_t end) const {
     return end < layout_.hosts ? end : end + layout_.cameras.size();
   }
+  // Where a stamp is that no clock counts ("a frame of camera 3"), the first of them; empty:
+  // nowhere.
+  const std::string& broken() const { return broken_; }
+  // "host 2", "camera 0", or the name of one outside.
+  std::string name_of(std::size_t clock) const;
 
  private:
+  void note_broken(std::string where);
   void add_exchange(std::uint32_t host, const Exchange& exchange);
   // A full second of an outside clock that a host saw within `seen`.
   void add_pulse(std::uint32_t host, std::uint32_t outside, Nanoseconds second, SteadyRange seen);
@@ -123,6 +129,7 @@ class CaptureEvidence final : public RecordingSink {
   std::vector<ClockPollEvidence> polls_;
   std::vector<HostMessage> messages_;
   EvidenceCounts counts_;
+  std::string broken_{};
   std::vector<OutsideClock> outside_;
   std::vector<std::optional<SteadyTime>> begin_;  // of what was recorded, by host
   Nanoseconds longest_{0};                        // from there on, the same for all hosts

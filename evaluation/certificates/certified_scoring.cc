@@ -74,13 +74,13 @@ std::vector<EvidenceSet> CertifiedScoring::sets() const {
 }
 
 std::vector<double> CertifiedScoring::bounds_ms() const {
-  const FactOrder order(evidence_);
   const std::vector<EvidenceSet> gathered = sets();
   try {
+    const FactOrder order(evidence_);
     const CertifiedCapture found = certify(evidence_, order, gathered, Horizon::kWhole);
     if (found.contradiction) return {};
     return certified_bounds_ms(found, gathered);
-  } catch (const TooManyInstants&) {
+  } catch (const NotCertifiable&) {
     return {};
   }
 }

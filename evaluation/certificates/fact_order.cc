@@ -1,11 +1,14 @@
 #include "evaluation/certificates/fact_order.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -166,6 +169,55 @@ std::vector<RoughClock> rough_clocks(const CaptureEvidence& evidence) {
   return rough;
 }
 
+// Calls `take` with each stamp and its clock.
+template <class Take>
+void each_stamp(const CaptureEvidence& evidence, const Take& take) {
+  const std::size_t hosts = evidence.layout().hosts;
+  const auto host_of = [&](std::uint32_t camera) { return evidence.layout().cameras[camera].host; };
+  for (const HostMessage& message : evidence.messages()) {
+    take(evidence.clock_of(message.from), count_of(message.sent));
+    take(evidence.clock_of(message.to), count_of(message.received));
+  }
+  for (const ClockPollEvidence& poll : evidence.polls()) {
+    take(hosts + poll.camera, count_of(poll.device));
+    take(host_of(poll.camera), count_of(poll.t0));
+    take(host_of(poll.camera), count_of(poll.t1));
+  }
+  for (const FrameEvidence& frame : evidence.frames()) {
+    take(hosts + frame.camera, count_of(frame.sensor));
+    take(host_of(frame.camera), count_of(frame.arrival));
+  }
+}
+
+void check_spans(const CaptureEvidence& evidence) {
+  if (!evidence.broken().empty()) {
+    throw NotCertifiable(
+        fmt::format("certificates: found {} with a stamp that no clock counts, "
+                    "allowed: 40 years since a host's start, 80 since 1970",
+                    evidence.broken()));
+  }
+  struct Span {
+    Nanoseconds first = Nanoseconds::max();
+    Nanoseconds last = Nanoseconds::min();
+  };
+  constexpr Nanoseconds kMostSpan = std::chrono::hours(20 * 24);
+  std::vector<Span> spans(evidence.clocks());
+  each_stamp(evidence, [&](std::size_t clock, Nanoseconds local) {
+    spans[clock].first = std::min(spans[clock].first, local);
+    spans[clock].last = std::max(spans[clock].last, local);
+  });
+  for (std::size_t clock = 0; clock < spans.size(); ++clock) {
+    const auto& [first, last] = spans[clock];
+    if (first > last) continue;  // it has no stamp
+    if (last / 2 - first / 2 <= kMostSpan / 2) continue;
+    throw NotCertifiable(
+        fmt::format("certificates: found stamps of {}'s clock from {:.6g} to {:.6g} s, allowed: at "
+                    "most 20 days "
+                    "in all; is one of them broken?",
+                    evidence.name_of(clock), to_ns(first) * 1e-9, to_ns(last) * 1e-9));
+  }
+}
+
 // Places 0 .. n-1 by key: begin[k] .. begin[k + 1] of `sorted` have key k.
 template <class Key>
 void sort_by_key(std::size_t count, std::size_t keys, const Key& key,
@@ -215,6 +267,7 @@ FactOrder::FactOrder(const CaptureEvidence& evidence)
 
 FactOrder::FactOrder(const CaptureEvidence& evidence, std::vector<RateBound> rates)
     : hosts_(evidence.layout().hosts), rates_(std::move(rates)) {
+  check_spans(evidence);
   add_points(evidence);
   sort_points(evidence);
   index_facts();

@@ -28,6 +28,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "algorithms/certificates/rate_bound.h"
@@ -66,6 +67,13 @@ std::vector<RateBound> assumed_rates(const CaptureEvidence& evidence);
 std::vector<RateBound> equal_rates(const CaptureEvidence& evidence, double host_ppm,
                                    double camera_ppm);
 
+// No certificates can be made of a recording, and why.
+class NotCertifiable : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Throws NotCertifiable for a clock whose stamps are further apart than 20 days, and for stamps
+// that no clock counts: one of them is broken, and sums of picoseconds would not fit 64 bits.
 class FactOrder {
  public:
   // With the rates that the evidence's assumptions say.

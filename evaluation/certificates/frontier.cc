@@ -8,7 +8,10 @@
 
 namespace simbench::evaluation {
 
-void Distances::close() {
+void Distances::close(bool may_be_long) { may_be_long ? close_all<true>() : close_all<false>(); }
+
+template <bool kMayBeLong>
+void Distances::close_all() {
   for (std::size_t k = 0; k < size_; ++k) {
     const std::int64_t* const onward = (*this)[k];
     for (std::size_t i = 0; i < size_; ++i) {
@@ -17,17 +20,13 @@ void Distances::close() {
       if (there >= kFar) continue;
       // A sum with what is unbounded stays above kFar.
       for (std::size_t j = 0; j < size_; ++j) {
-        distances[j] = std::min(distances[j], there + onward[j]);
+        std::int64_t sum = there + onward[j];
+        if (kMayBeLong) sum = std::max(sum, -kFar);
+        distances[j] = std::min(distances[j], sum);
       }
     }
   }
 }
-
-TooManyInstants::TooManyInstants()
-    : std::runtime_error(fmt::format(
-          "certificates: found more than {} instants that wait for another, allowed: stamps that "
-          "order the clocks; is a clock in the recording reset, or a message's stamp far off?",
-          FrontierWalk::kMostLive)) {}
 
 FrontierWalk::FrontierWalk(const FactOrder& order, Direction direction)
     : order_(order),
@@ -41,7 +40,12 @@ std::optional<std::uint32_t> FrontierWalk::take_next() {
   const std::size_t point = next_;
   next_ += is_forward ? std::size_t{1} : ~std::size_t{0};
   ++taken_;
-  if (graph_.live().size() > kMostLive) throw TooManyInstants();
+  if (graph_.live().size() > kMostLive) {
+    throw NotCertifiable(fmt::format(
+        "certificates: found more than {} instants that wait for another, allowed: stamps that "
+        "order the clocks; is a clock in the recording reset, or a message's stamp far off?",
+        kMostLive));
+  }
   const ClockPoint& taken = order_.points()[point];
   const ClockGraph::Point here = graph_.advance(taken.clock, taken.local);
   for (const std::uint32_t fact : is_forward ? order_.opened_by(point) : order_.closed_by(point)) {
@@ -72,6 +76,7 @@ std::optional<std::uint32_t> FrontierWalk::close_fact(std::uint32_t number,
 
 Frontier FrontierWalk::frontier() const {
   Frontier frontier;
+  frontier.is_long = graph_.is_long();
   for (std::size_t clock = 0; clock < graph_.clocks(); ++clock) {
     if (!graph_.has_begun(clock)) continue;
     const ClockGraph::Point point = graph_.newest(clock);
@@ -147,10 +152,11 @@ Distances join(const FactOrder& order, const Frontier& past, const Frontier& fut
       if (crossings[j].back >= Distances::kFar) continue;
       const std::int64_t there = onward[*crossings[j].there];
       if (there >= Distances::kFar) continue;
-      joined[i][j] = std::min(joined[i][j], crossings[i].out + there + crossings[j].back);
+      const std::int64_t sum = crossings[i].out + there + crossings[j].back;
+      joined[i][j] = std::min(joined[i][j], std::max(sum, -Distances::kFar));
     }
   }
-  joined.close();
+  joined.close(past.is_long || future.is_long);
   return joined;
 }
 

@@ -23,7 +23,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <vector>
 
 #include "algorithms/certificates/clock_graph.h"
@@ -43,9 +42,13 @@ class Distances {
   std::int64_t* operator[](std::size_t from) { return values_.data() + from * size_; }
   const std::int64_t* operator[](std::size_t from) const { return values_.data() + from * size_; }
   // All shortest paths in place.
-  void close();
+  // Differences below -kFar count as -kFar if they `may_be_long` (ClockGraph::is_long()).
+  void close(bool may_be_long);
 
  private:
+  template <bool kMayBeLong>
+  void close_all();
+
   std::size_t size_;
   std::vector<std::int64_t> values_;
 };
@@ -61,17 +64,13 @@ struct Frontier {
 
   std::vector<Place> places;
   Distances distances{0};
-};
-
-// More instants matter at once than kMostLive: clocks that nothing orders, or stamps that are far
-// off. The work would grow with the square of their number.
-class TooManyInstants : public std::runtime_error {
- public:
-  TooManyInstants();
+  bool is_long = false;  // ClockGraph::is_long()
 };
 
 class FrontierWalk {
  public:
+  // More instants matter at once only where nothing orders the clocks, or stamps are far off; the
+  // work would grow with the square of their number.
   static constexpr std::size_t kMostLive = 4000;
   enum class Direction : std::uint8_t { kForward, kBackward };
   static constexpr Direction kForward = Direction::kForward;
@@ -80,7 +79,8 @@ class FrontierWalk {
   FrontierWalk(const FactOrder& order, Direction direction);
 
   // Takes the next point, which is next(). The fact that contradicts what is known, if any; then
-  // the walk is over. Throws TooManyInstants.
+  // the walk is over. Throws NotCertifiable beyond
+  // kMostLive.
   std::optional<std::uint32_t> take_next();
   std::size_t next() const { return next_; }
   std::size_t taken() const { return taken_; }

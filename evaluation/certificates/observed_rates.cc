@@ -1,6 +1,7 @@
 #include "evaluation/certificates/observed_rates.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -85,8 +86,11 @@ std::optional<double> camera_slope(const CaptureEvidence& evidence, std::uint32_
   return quick_slope(std::move(readings));
 }
 
-double chained_ppm(double own_ppm, double slope) {
-  return ((1 + own_ppm * 1e-6) * (1 + slope) - 1) * 1e6;
+// Nothing beyond what an oscillator may be off: then the stamps are no readings.
+std::optional<double> chained_ppm(double own_ppm, double slope) {
+  constexpr double kMostPpm = 1e5;
+  const double ppm = ((1 + own_ppm * 1e-6) * (1 + slope) - 1) * 1e6;
+  return std::abs(ppm) <= kMostPpm ? std::optional(ppm) : std::nullopt;
 }
 
 }  // namespace
@@ -105,7 +109,7 @@ std::vector<std::optional<double>> observed_rates_ppm(const CaptureEvidence& evi
       const auto slope = host_slope(evidence, reached[next], other);
       if (!slope) continue;
       rate = chained_ppm(*rates[evidence.clock_of(reached[next])], *slope);
-      reached.push_back(other);
+      if (rate) reached.push_back(other);
     }
   }
   for (std::uint32_t camera = 0; camera < evidence.layout().cameras.size(); ++camera) {

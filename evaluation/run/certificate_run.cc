@@ -72,16 +72,8 @@ class Readings {
   std::vector<std::vector<std::int64_t>> of_host_;
 };
 
-std::string clock_name(const CaptureEvidence& evidence, std::uint32_t clock) {
-  const std::uint32_t hosts = evidence.layout().hosts;
-  const std::size_t outside = hosts + evidence.layout().cameras.size();
-  if (clock < hosts) return fmt::format("host {}", clock);
-  if (clock < outside) return fmt::format("camera {}", clock - hosts);
-  return evidence.outside_clocks()[clock - outside].name;
-}
-
 std::string instant_text(const CaptureEvidence& evidence, const ClockPoint& point) {
-  return fmt::format("{} at {:.6f} s", clock_name(evidence, point.clock), to_seconds(point.local));
+  return fmt::format("{} at {:.6f} s", evidence.name_of(point.clock), to_seconds(point.local));
 }
 
 // "message: sent by host 2 at 12.345678 s, received by host 0 at 45.678901 s".
@@ -205,7 +197,6 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
   }
   part.counts = evidence.counts();
   const std::vector<EvidenceSet> sets = both.sets();
-  const FactOrder order(evidence);
   PairVisitor keep;
   if (options.keep_pairs) {
     keep = [&](std::size_t set, const PairInterval& pair) {
@@ -215,13 +206,14 @@ CapturePart certify_capture(const scenarios::Scenario& scenario, const PipelineC
     };
   }
   try {
+    const FactOrder order(evidence);
     const CertifiedCapture found = certify(evidence, order, sets, options.horizon, keep);
     if (found.contradiction) {
       part.contradicted = {contradicted(seed, evidence, order, *found.contradiction)};
     } else {
       add_sets(found, sets, evidence, part);
     }
-  } catch (const TooManyInstants& problem) {
+  } catch (const NotCertifiable& problem) {
     part.problem = problem.what();
   }
   std::ranges::stable_sort(part.pairs, {}, &CertifiedPair::set);

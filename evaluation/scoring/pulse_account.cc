@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "laws/saturate.h"
+
 namespace simbench::evaluation {
 namespace {
 
@@ -36,20 +38,27 @@ void PulseAccount::add(std::uint32_t camera, std::int64_t pulse, std::uint32_t c
 
 void PulseAccount::take_out(const Frame& last, const Frame& next,
                             std::vector<bool>& exposed) const {
-  const std::int64_t missing = next.pulse - last.pulse - 1;
+  const std::int64_t first = last.pulse + 1;
+  const std::int64_t missing = next.pulse - first;
   if (missing <= 0) return;
   const std::int64_t lost = std::uint32_t{next.counter - last.counter} - std::int64_t{1};
   const std::int64_t shot = lost < 0 || lost > missing ? 0 : lost;
-  std::int64_t next_shot = 1;
-  for (std::int64_t i = 1; i <= missing; ++i) {
-    if (next_shot <= shot && i == (next_shot * (missing + 1) + shot / 2) / (shot + 1)) {
+  // The k-th of them is this one in the gap. A pulse may have any number.
+  const auto place_of = [&](std::int64_t k) {
+    return (Int128{k} * (Int128{missing} + 1) + shot / 2) / (shot + 1);
+  };
+  const std::int64_t begin = std::max(first, first_pulse_);
+  const std::int64_t end = std::min(next.pulse, first_pulse_ + static_cast<std::int64_t>(pulses_));
+  // The first of them that is due from `begin` on.
+  const Int128 before = Int128{begin - last.pulse} * (shot + 1) - shot / 2;
+  auto next_shot =
+      static_cast<std::int64_t>(std::max<Int128>(1, (before + missing) / (Int128{missing} + 1)));
+  for (std::int64_t pulse = begin; pulse < end; ++pulse) {
+    if (next_shot <= shot && pulse - last.pulse == place_of(next_shot)) {
       ++next_shot;
       continue;
     }
-    const std::int64_t row = last.pulse + i - first_pulse_;
-    if (row >= 0 && row < static_cast<std::int64_t>(pulses_)) {
-      exposed[static_cast<std::size_t>(row)] = false;
-    }
+    exposed[static_cast<std::size_t>(pulse - first_pulse_)] = false;
   }
 }
 

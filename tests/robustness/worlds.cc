@@ -95,20 +95,25 @@ void Worlds::collect(const std::string& pointer, const json& value, const ordere
 
 std::vector<std::string> Worlds::next(Random& random) const {
   const World& world = random.of(worlds_);
-  const bool is_of_clocks = random.one_in(5);
-  std::vector<std::string> arguments = {"simbench",     is_of_clocks ? "clocks" : "run",
-                                        "--scenario",   world.name,
-                                        "--seeds",      "1",
-                                        "--jobs",       "1",
-                                        "--format",     random.one_in(2) ? "json" : "table",
-                                        "--pipelines",  random.of(world.pipelines),
-                                        "--first-seed", std::to_string(1 + random.below(1000)),
-                                        "--set",        "/timeline/frames=20"};
-  if (is_of_clocks) {
-    for (const char* const word : {"--duration-s", "60", "--from-s", "10"}) {
-      arguments.emplace_back(word);
-    }
+  std::vector<std::string> arguments = {"simbench"};
+  switch (random.below(5)) {
+    case 0:
+      arguments.insert(arguments.end(),
+                       {"clocks", world.name, "--duration-s", "60", "--from-s", "10"});
+      break;
+    case 1:
+      arguments.insert(arguments.end(), {"certify", world.name, "--estimated-stamp-ms", "0.02"});
+      break;
+    default:
+      arguments.insert(arguments.end(), {"run", world.name});
   }
+  const std::vector<std::string> more = {"--seeds",      "1",
+                                         "--jobs",       "1",
+                                         "--format",     random.one_in(2) ? "json" : "table",
+                                         "--pipelines",  random.of(world.pipelines),
+                                         "--first-seed", std::to_string(1 + random.below(1000)),
+                                         "--set",        "/timeline/frames=20"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
   const std::size_t changes = 1 + random.below(6);
   for (std::size_t i = 0; i < changes; ++i) {
     const Parameter& parameter = random.of(world.parameters);

@@ -31,6 +31,31 @@ TEST(RateBound, RoundsOutward) {
   EXPECT_DOUBLE_EQ(measured.ppm(), 2.0);
 }
 
+// A clock that may stand still, or race, bounds nothing.
+TEST(RateBound, AnyRateIsTaken) {
+  for (const double ppm : {1e6, 5e6, 1e300}) {
+    const RateBound loose(ppm);
+    EXPECT_EQ(loose.most(from_ms(10'000)), RateBound::kLongest) << ppm;
+    EXPECT_GE(loose.least(from_ms(10'000)), ps(0)) << ppm;
+    EXPECT_LE(loose.least(from_ms(10'000)), ps(10'000'000'000'000)) << ppm;
+    ClockGraph graph({loose, RateBound(0)});
+    const Point host = graph.advance(1, Nanoseconds(0));
+    const Point before = graph.advance(0, Nanoseconds(0));
+    graph.keep(before);
+    ASSERT_TRUE(graph.bound(host, before, ps(0)));
+    EXPECT_FALSE(ClockGraph::is_bounded(graph.most(host, graph.advance(0, from_ms(10'000)))));
+  }
+  // Backwards, which no clock goes: as slow as can be.
+  EXPECT_EQ(RateBound(-3e6, 10).most(from_ms(10'000)), RateBound::kLongest);
+}
+
+TEST(RateBound, LongIntervalsAreNotBounded) {
+  const RateBound quartz(50);
+  EXPECT_EQ(quartz.most(Nanoseconds::max()), RateBound::kLongest);
+  EXPECT_EQ(quartz.least(Nanoseconds::max()), RateBound::kLongest);
+  EXPECT_EQ(quartz.most(Nanoseconds(-Nanoseconds::max().count())), -RateBound::kLongest);
+}
+
 // A perfect host asks a camera, which answers: the reading lies within the round trip.
 TEST(ClockGraph, ARoundTripBoundsAReading) {
   ClockGraph graph({RateBound(0), RateBound(0)});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 #include "evaluation/certificates/capture_evidence.h"
 
@@ -11,6 +12,8 @@ namespace simbench::evaluation {
 namespace {
 
 using std::chrono::seconds;
+
+using testing::HasSubstr;
 
 constexpr int kExchanges = 1200;
 constexpr seconds kBack{60};
@@ -71,6 +74,62 @@ TEST(FactOrder, FollowsTheClocksDrift) {
   }
   const FactOrder order(evidence);
   for (const ClockFact& fact : order.facts()) ASSERT_LE(fact.later() - fact.earlier(), 4U);
+}
+
+CaptureEvidence one_frame() {
+  CaptureEvidence evidence({}, StreamKind::kDepth);
+  evidence.on_start({.hosts = 1, .cameras = {{0}}});
+  FrameRecord frame;
+  frame.sensor = {100'000};
+  evidence.on_frame(frame, nullptr);
+  return evidence;
+}
+
+const char* refused_text(const CaptureEvidence& evidence, std::string& text) {
+  try {
+    const FactOrder order(evidence);
+  } catch (const NotCertifiable& problem) {
+    text = problem.what();
+  }
+  return text.c_str();
+}
+
+// A clock whose stamps are months apart, and stamps that no clock counts, near the ends of 64 bits.
+TEST(FactOrder, BrokenStampsAreRefusedByName) {
+  std::string text;
+  CaptureEvidence evidence = one_frame();
+  EXPECT_STREQ(refused_text(evidence, text), "");
+  FrameRecord late;
+  late.sensor = {200'000};
+  late.arrival_steady = SteadyTime(std::chrono::hours(24 * 19));
+  evidence.on_frame(late, nullptr);
+  EXPECT_STREQ(refused_text(evidence, text), "");
+  late.arrival_steady = SteadyTime(std::chrono::hours(24 * 21));
+  evidence.on_frame(late, nullptr);
+  EXPECT_THAT(refused_text(evidence, text),
+              HasSubstr("stamps of host 0's clock from 0 to 1.8144e+06 s"));
+}
+
+TEST(FactOrder, StampsThatNoClockCountsAreRefusedByName) {
+  for (const Nanoseconds end : {Nanoseconds::max(), Nanoseconds::min()}) {
+    const auto refused = [&](const RecordingEvent& event, const char* where) {
+      CaptureEvidence evidence = one_frame();
+      evidence.on_event(ClockAdjustment{0, {}, {}, {}, 0});
+      evidence.on_event(event);
+      std::string text;
+      EXPECT_THAT(refused_text(evidence, text), HasSubstr(where));
+    };
+    refused(ClockAdjustment{0, SteadyTime(end), {}, {}, 0}, "found an adjustment of host 0 with");
+    refused(ClockAdjustment{0, {}, {}, HostTime(end), 0}, "an adjustment of host 0");
+    refused(DevicePoll{0, {1}, {}, {}, SteadyTime(end), SteadyTime(end)}, "a poll of camera 0");
+    refused(ExchangeEvent{0, {.peer = 0, .t1 = HostTime(end)}}, "an exchange of host 0");
+    CaptureEvidence evidence = one_frame();
+    FrameRecord frame;
+    frame.arrival_steady = SteadyTime(end);
+    evidence.on_frame(frame, nullptr);
+    std::string text;
+    EXPECT_THAT(refused_text(evidence, text), HasSubstr("a frame of camera 0"));
+  }
 }
 
 }  // namespace

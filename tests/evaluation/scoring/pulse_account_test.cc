@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <random>
 #include <vector>
 
 namespace simbench::evaluation {
@@ -116,6 +118,35 @@ TEST(PulseAccount, TheCounterMayWrap) {
     if (pulse != 15 && pulse != 22) account.add(0, pulse, counter);
   }
   EXPECT_EQ(counts_of(account).exposed_pulses, kPulses);
+}
+
+// A gap is the same seen from any window: what two neighbouring windows count, both together do.
+TEST(PulseAccount, AGapIsDividedAlikeInEveryWindow) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 200; ++i) {
+    PulseAccount left(0, kFirst, 1), right(kFirst, kPulses, 1), both(0, kFirst + kPulses, 1);
+    std::uint32_t counter = 7;
+    for (std::int64_t pulse = 0; pulse < 40; ++pulse) {
+      const bool is_last = pulse == 39;
+      if (random() % 3 == 0) ++counter;
+      if (random() % 5 != 0 && pulse != 0 && !is_last) continue;
+      for (PulseAccount* account : {&left, &right, &both}) account->add(0, pulse, counter);
+      ++counter;
+    }
+    EXPECT_EQ(counts_of(left).exposed_pulses + counts_of(right).exposed_pulses,
+              counts_of(both).exposed_pulses);
+  }
+}
+
+// As of a recording that is damaged: the work grows with the window alone.
+TEST(PulseAccount, AFrameMayBeOfAnyPulse) {
+  PulseAccount account(kFirst, kPulses, 1);
+  account.add(0, 0, 0);
+  account.add(0, std::numeric_limits<std::int64_t>::max(), 3'000'000'000);
+  EXPECT_EQ(counts_of(account).exposed_pulses, 0);
+  PulseAccount from_zero(0, kPulses, 1);
+  from_zero.add(0, std::numeric_limits<std::int64_t>::max(), 5);
+  EXPECT_EQ(counts_of(from_zero).exposed_pulses, 0);
 }
 
 TEST(PulseAccount, WithoutFramesNothingWasExposed) {

@@ -23,11 +23,13 @@ class MadeUpSteering final : public CameraSteering {
   }
   FrameControlReply start_at(MonotonicTime at) override {
     starts.push_back(at);
+    asked.push_back(monotonic_now());
     return requests_.reply(FrameControlKind::kStartAt, {});
   }
 
   std::vector<std::pair<FrameControlKind, Nanoseconds>> controls;
   std::vector<MonotonicTime> starts;
+  std::vector<MonotonicTime> asked;  // when it was asked for each
 
  private:
   clocks::FrameRequests requests_;
