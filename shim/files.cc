@@ -345,7 +345,7 @@ SIMBENCH_CALL char* mkdtemp(char* name) {
 
 SIMBENCH_CALL FILE* tmpfile() {
   if (!is_simulated()) return SIMBENCH_REAL(tmpfile)();
-  char name[] = "/tmp/XXXXXX";
+  char name[] = P_tmpdir "/XXXXXX";
   const int fd = mkstemp(name);
   if (fd < 0) return nullptr;
   unlink(name);

@@ -12,7 +12,7 @@
 // not read below /run, /var, /tmp and /dev/shm is not there.
 //
 //   const OwnPath path("/run/chrony/chronyd.pid", Use::kCreates);
-//   print(path.text());  // "/tmp/.../host1/run/chrony/chronyd.pid"
+//   print(path.text());  // "FOLDER/host1/run/chrony/chronyd.pid"
 #pragma once
 
 #include <limits.h>

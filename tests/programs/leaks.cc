@@ -324,7 +324,7 @@ void say_folders() {
     if (folder != nullptr) closedir(folder);
     say(path, listed);
   }
-  char name[] = "/tmp/fileXXXXXX";
+  char name[] = P_tmpdir "/fileXXXXXX";
   close(mkstemp(name));
   say("mkstemp", name);
   char linked[4096] = "";

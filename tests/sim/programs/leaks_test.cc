@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <set>
 #include <sstream>
@@ -77,7 +78,7 @@ TEST_F(Leaks, OfWhatTheMachineTellsToPython) {
   const std::string said = file(1, "0_python3.log");
   EXPECT_THAT(said, EndsWith("done\n"));
   EXPECT_THAT(said, HasSubstr("\nprocessors 1 {0} (0.0, 0.0, 0.0)\n"));
-  EXPECT_THAT(said, HasSubstr("\ntemporary /tmp/"));
+  EXPECT_THAT(said, HasSubstr("\ntemporary " P_tmpdir "/"));
 }
 
 TEST_F(Leaks, OfTheTimesOfFilesThatChronydReads) {
