@@ -6,7 +6,7 @@
 //   faults   lets reading a good file fail after so many bytes
 //
 // Whatever the input, a command ends in 10 s, within 1 GB, without a signal or an internal error,
-// prints neither nan nor inf, and hears Ctrl-C soon (tests/robustness/child.h).
+// prints neither nan nor inf, and hears Ctrl-C within 1 s of work (tests/robustness/child.h).
 //
 // How many were accepted all the same is printed by kind: a reader that refuses every mutant is not
 // tried behind its first lines.
