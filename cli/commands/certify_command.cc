@@ -179,7 +179,7 @@ int run_certify(CertifyOptions options) {
 }
 
 void add_assumption_options(Command& command, CertifyOptions& options) {
-  constexpr double kMostPpm = 1e5, kMostMs = 1e5;
+  constexpr double kMostPpm = evaluation::Assumptions::kMostRate_ppm, kMostMs = 1e5;
   command.number(
       "--host-rate-ppm", "PPM", options.host_rate_ppm, 0, kMostPpm,
       "Assume that each host's oscillator is within +-PPM of true time. Default: 50, or what\n"

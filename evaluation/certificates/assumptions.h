@@ -33,6 +33,7 @@ struct Assumptions {
   static constexpr double kSigmas = 8;
   static constexpr double kRateSigmas = 5;
   static constexpr double kDataSheet_ppm = 50;
+  static constexpr double kMostRate_ppm = 1e5;  // no oscillator is that far off
 
   double host_rate_ppm = kDataSheet_ppm;    // of each host's oscillator, against true time
   double camera_rate_ppm = kDataSheet_ppm;  // of each camera's

@@ -45,7 +45,7 @@ class CertifiedScoring final : public RecordingSink {
   // as after a reset of its clock, the first that belongs to none is meant. O(n log n).
   std::vector<EvidenceSet> sets() const;
   // By set, in the order of their emission (certified_bounds_ms()); empty if facts contradict each
-  // other, or are too many at once.
+  // other, or none can be made (NotCertifiable).
   std::vector<double> bounds_ms() const;
   // Who takes the scorer's place for one observer passes its sets on to this.
   ScoreObserver& observer() { return collected_; }

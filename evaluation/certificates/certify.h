@@ -79,7 +79,7 @@ struct CertifiedCapture {
 // Called with each pair of each set, in order.
 using PairVisitor = std::function<void(std::size_t set, const PairInterval&)>;
 
-// Throws NotCertifiable (frontier.h).
+// Throws NotCertifiable (fact_order.h).
 CertifiedCapture certify(const CaptureEvidence& evidence, const FactOrder& order,
                          std::span<const EvidenceSet> sets, Horizon horizon,
                          const PairVisitor& visit = {});

@@ -41,8 +41,8 @@ class Distances {
   std::size_t size() const { return size_; }
   std::int64_t* operator[](std::size_t from) { return values_.data() + from * size_; }
   const std::int64_t* operator[](std::size_t from) const { return values_.data() + from * size_; }
-  // All shortest paths in place.
-  // Differences below -kFar count as -kFar if they `may_be_long` (ClockGraph::is_long()).
+  // All shortest paths in place. Differences below -kFar count as -kFar if they `may_be_long`
+  // (ClockGraph::is_long()).
   void close(bool may_be_long);
 
  private:
@@ -79,8 +79,7 @@ class FrontierWalk {
   FrontierWalk(const FactOrder& order, Direction direction);
 
   // Takes the next point, which is next(). The fact that contradicts what is known, if any; then
-  // the walk is over. Throws NotCertifiable beyond
-  // kMostLive.
+  // the walk is over. Throws NotCertifiable beyond kMostLive.
   std::optional<std::uint32_t> take_next();
   std::size_t next() const { return next_; }
   std::size_t taken() const { return taken_; }

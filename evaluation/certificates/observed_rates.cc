@@ -88,9 +88,8 @@ std::optional<double> camera_slope(const CaptureEvidence& evidence, std::uint32_
 
 // Nothing beyond what an oscillator may be off: then the stamps are no readings.
 std::optional<double> chained_ppm(double own_ppm, double slope) {
-  constexpr double kMostPpm = 1e5;
   const double ppm = ((1 + own_ppm * 1e-6) * (1 + slope) - 1) * 1e6;
-  return std::abs(ppm) <= kMostPpm ? std::optional(ppm) : std::nullopt;
+  return std::abs(ppm) <= Assumptions::kMostRate_ppm ? std::optional(ppm) : std::nullopt;
 }
 
 }  // namespace

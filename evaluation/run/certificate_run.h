@@ -88,8 +88,7 @@ struct CertificateRow {
   std::string problem{};  // why there is nothing; empty: nothing is wrong
   std::uint64_t captures = 0;
   std::vector<ContradictedCapture> contradicted{};
-  std::vector<double>
-      apart_ms{};  // of each set of two frames or more, ascending; infinite: unknown
+  std::vector<double> apart_ms{};  // of sets of two frames or more, ascending; infinite: unknown
   std::vector<CertifiedPair> pairs{};
   std::size_t within = 0;           // sets within CertificateOptions::within_ms
   std::size_t impossible_sets = 0;  // that no pulses of a common trigger explain

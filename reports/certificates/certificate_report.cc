@@ -218,8 +218,7 @@ std::string contradicted_text(const CertificateRun& run) {
   for (const CertificateRow& row : run.rows) captures += row.contradicted.size();
   if (captures == 0) return {};
   return fmt::format(
-      "{} {} no certificates: what is recorded contradicts what is assumed; "
-      "see below.",
+      "{} {} no certificates: what is recorded contradicts what is assumed; see below.",
       counted(static_cast<std::uint64_t>(captures), "capture"), captures == 1 ? "has" : "have");
 }
 
@@ -230,8 +229,7 @@ std::string nothing_text(const CertificateRun& run) {
   });
   return is_contradicted ? "Nothing is certified: what is assumed contradicts every recording."
                          : "Nothing is certified: no pipeline's recording bounds how far the "
-                           "frames of its sets "
-                           "are apart.";
+                           "frames of its sets are apart.";
 }
 
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
